@@ -148,18 +148,21 @@ TEST_F(ClothProgram, SaysHowLongTheStepIsAndMayBe) {
               0.0001);
 }
 
-TEST_F(ClothProgram, WarnsAboveTheLimitAndGoesOn) {
-  Result r = run(grid0 + "--headless --dt 0.025 --t-end 0.1");
+// Beyond the limit waves grow, but a run may be over before that shows.
+TEST_F(ClothProgram, WarnsOfAStepOnlyWhereHalfOfItDiffers) {
+  const std::string sheet =
+      "--sheet 'nodes 9 9' --pin 'x 0' --headless --t-end ";
+  EXPECT_EQ(run(sheet + "0.1 --method forward-euler --dt 1e-4").err, "");
+  EXPECT_EQ(run(sheet + "0.1 --method verlet --dt 0.008").err, "");
+  const std::string falls =
+      "--sheet 'nodes 9 9 velocity 0 0 2' --pin 'x 0 y 0' "
+      "--plane 'at 0 0 -0.3' --headless --t-end 1 ";
+  const Result r = run(falls + "--method srkn11b --dt 0.02");
   EXPECT_EQ(r.status, 0);
-  EXPECT_TRUE(
-      begins(r.err, "cloth: warning: dt exceeds the stability limit: "));
-  EXPECT_LT(number(r.err, " in every step; use --dt ", " or --dt auto\n"),
-            0.0123);
-  EXPECT_EQ(run(grid0 + "--headless --dt 0.013 --t-end 0.1").err, "");
-  EXPECT_EQ(run(grid0 + "--headless --dt 0.025 --t-end 0.1 --quiet").err, "");
-  EXPECT_EQ(run(grid0 + "--headless --t-end 0.1 --method forward-euler").err,
-            "cloth: warning: waves in the springs grow in every step of "
-            "forward-euler; use --method verlet --dt auto\n");
+  EXPECT_TRUE(begins(r.err, "cloth: warning: half of dt gives "));
+  EXPECT_TRUE(has(r.err, " works: a trial to t = 1 s passed"));
+  EXPECT_TRUE(has(r.out, "; half of dt gives "));
+  EXPECT_EQ(run(falls + "--method srkn11b --dt 0.02 --quiet").err, "");
 }
 
 TEST_F(ClothProgram, ChoosesItsStep) {
@@ -394,7 +397,7 @@ TEST_F(ClothProgram, TellsARemedyThatWorksWhereTheEnergyIsWrong) {
     const std::size_t begin = r.err.rfind("; ", end) + 2;
     const Result cured = run(net + more + r.err.substr(begin, end - begin));
     EXPECT_EQ(cured.status, 0) << cured.err;
-    EXPECT_EQ(cured.err, "");
+    EXPECT_FALSE(has(cured.err, "energy off"));
   }
 }
 

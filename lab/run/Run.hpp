@@ -57,7 +57,8 @@ class Run {
   /** Print what acts, how long the step is, and how long it may be; warn of
    * what will go wrong, and of a run of hours. */
   void announce();
-  /** Once the run is done(): judge its energy, and warn of what is wrong.
+  /** Once the run is done(): judge its energy, compare a short run with one of
+   * half of its step, and warn of what is wrong.
    * @return false: the method has made more of it than is tolerated */
   bool judge();
   /** The warnings so far, without what is in --quiet runs. */
@@ -92,6 +93,8 @@ class Run {
   double seconds_ = 0;          // until the last step
   bool missed_ = false, told_ = false;
   std::optional<bool> kept_energy_;  // judge()
+  std::optional<Attempt> half_;      // of the step, if that was tried
+  bool halved_ = false;              // or it need not be tried
   std::vector<std::string> warnings_;
 
   int steps_to_write() const;
@@ -110,6 +113,7 @@ class Run {
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
+  void try_half();
   void tell_energy() const;
   void tell_steps(const StepControl& c) const;
   void tell_work() const;

@@ -87,6 +87,14 @@ std::string Cure::options(const MethodEntry& before) const {
              : "--method " + std::string(method.info.name) + ' ' + step;
 }
 
+std::string Attempt::half_text() const {
+  const std::string energy = passed ? "" : "another energy and ";
+  if (apart == no_limit)
+    return "half of dt gives " + energy + "other nodes that are removed";
+  return "half of dt gives " + energy + "positions that differ by up to " +
+         CME212::percent(apart) + " of the size of the cloth";
+}
+
 bool is_flat(const Cloth& g) {
   const auto nodes = g.nodes();
   if (g.num_nodes() == 0) return false;

@@ -101,6 +101,10 @@ struct Attempt {
    * cloth. */
   double apart = 0;
   static constexpr double same_place = 0.01;  ///< apart, of equal positions
+  /** Half of the step changes less than a run is warned of. */
+  bool is_close() const { return passed && apart <= 4 * same_place; }
+  /** What half of the step changes, in words. */
+  std::string half_text() const;
 };
 using TryOut = std::function<Attempt(const Cure&)>;
 

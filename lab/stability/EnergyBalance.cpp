@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "lab/fast/Energy.hpp"
@@ -157,6 +158,16 @@ double EnergyWatch::tolerance() const {
 bool EnergyWatch::is_off() const {
   const double most = energy_tolerance / 2 * seen_.scale + slack();
   return off() > most + lift() || -off() > most + fall();
+}
+
+std::string EnergyWatch::off_text() const {
+  std::ostringstream out;
+  out.precision(3);
+  out << "energy off by " << off() << " J";
+  if (share() != 0)
+    out << " (" << CME212::percent(share())
+        << " of the largest internal energy)";
+  return out.str();
 }
 
 std::string EnergyWatch::gain_text() const {

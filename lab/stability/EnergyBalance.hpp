@@ -187,6 +187,8 @@ class EnergyWatch {
   double off() const { return change() + taken_; }
   /** At most what contact took, and what tearing took [J]. */
   double taken() const { return taken_ + torn_; }
+  /** The largest internal or kinetic energy [J]. */
+  double largest() const { return std::max(seen_.scale, kinetic_); }
   /** What tearing took [J]. */
   double torn() const { return torn_; }
   /** off() as a share of the largest internal energy; 0 if that is negligible,
@@ -202,6 +204,8 @@ class EnergyWatch {
   /** The gain is more than springs and their waves ever had: it is in the
    * motion of the whole. */
   bool gains_beside_springs() const { return gain() > seen_.scale; }
+  /** off() in words. */
+  std::string off_text() const;
   /** gains() in words. */
   std::string gain_text() const;
   /** The energy is off by more than half of that share, slack(); of a gain,

@@ -142,6 +142,11 @@ class Scene {
   Explanation explanation() const;
   /** The remedy in words.  @pre and throws as explanation() */
   std::string remedy() const;
+  /** This run, compared with one of half of its step: passed if the energies
+   * are the same, to 2.5 % of the largest. nullopt: it fails, or would take
+   * more than @a work, or there was a change since the start.
+   * @pre energy_watch(), no failure()   Throws Interrupted. */
+  std::optional<Attempt> half_step(double work) const;
   /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
   /** The scene with the method and step of @a cure: from its start, or from the

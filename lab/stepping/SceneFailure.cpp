@@ -92,6 +92,20 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
 
 }  // namespace
 
+std::optional<Attempt> Scene::half_step(double work) const {
+  const double springs = cloth().num_nodes() + cloth().num_edges();
+  if (changed_ ||
+      2 * double(steps()) * evaluations_of(method()) * springs > work)
+    return std::nullopt;
+  const auto finer = anew({stepper_.method_entry(), dt() / 2});
+  // With order 1, that is half of the error.
+  const double most =
+      energy_tolerance / 4 * energy_watch()->largest() + stepper_.round_off();
+  if (!finer->run_to(time(), end_if_interrupted)) return std::nullopt;
+  return Attempt{std::abs(finer->energy().total() - energy().total()) <= most,
+                 time(), distance(cloth(), finer->cloth())};
+}
+
 const Diagnosis& Scene::diagnosis() const {
   if (diagnosis_) return *diagnosis_;
   const FailedRun run = failed_run(*this);
