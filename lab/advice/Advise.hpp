@@ -25,7 +25,7 @@ struct AdviceRules {
   double most_nodes = 0;
   /** Once a choice is found, a finer grid is run to find a cheaper one if that
    * takes at most so many spring evaluations, or 0.3 of the scene's own run. */
-  double patience = 2e6;
+  double patience = 1e7;
   /** Share of the uncertainty that is added to the error of a choice that was
    * run. All of it would take one or two more grids, and few scenes need that:
    * suite.py. */

@@ -171,8 +171,9 @@ class Scene(questions.Scene):
 
     def error(self, trial: Trial | None, right: Sequence[float]) -> float:
         # An event need not happen on each grid: then there is no time.
-        known = trial and len(trial[0]) == len(right)
-        return math.dist(trial[0], right) if known else math.inf
+        if not trial or len(trial[0]) != len(right):
+            return math.inf
+        return math.dist(trial[0], right)
 
     def scaled(self, along: float) -> Cells:
         """The scene's own grids with so many cells along the longest side."""
