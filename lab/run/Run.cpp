@@ -418,8 +418,7 @@ void Run::tell_work() const {
   std::cout << "work: " << text << '\n';
 }
 
-/** Compare with half of the step, if that is fast and dt is fixed; a run that
- * seems wrong may take a second. */
+/** Compare with half of the step, if that is fast and dt is fixed. */
 void Run::try_half() {
   const double share = scene_.energy_watch()->is_off() ? 1 : 1 / 4.;
   if (halved_ || o_.quiet || o_.bounds_error || scene_.control() ||

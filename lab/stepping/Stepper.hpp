@@ -154,8 +154,7 @@ class Stepper {
    * drag is summed every few steps, unless follow_drag() */
   void watch_energy(double t_end);
   const std::optional<EnergyWatch>& energy_watch() const { return watch_; }
-  /** Drag has taken nearly all of an initial velocity: 1 - exp(-1.5), of an
-   * energy 95 %. So it would have taken what the method lost early, too. */
+  /** Drag has taken 95 % of an initial energy, 1 - exp(-3). */
   bool forgets() const { return largest_gamma_ * time() > 1.5; }
   /** The energy of springs strained by round-off [J]. */
   double round_off() const { return guard_->round_off(); }
