@@ -199,6 +199,8 @@ class EnergyWatch {
   /** The gain that is tolerated [J]: the share of the largest internal energy
    * that StepControl tolerates, slack(), lift(). */
   double tolerance() const;
+  /** The part of tolerance() besides that share [J]. */
+  double slack() const;
   /** The method has added more energy than is tolerated. */
   bool gains() const { return gain() > tolerance(); }
   /** The gain is more than springs and their waves ever had: it is in the
@@ -234,7 +236,6 @@ class EnergyWatch {
   /** A cloth at rest on an obstacle, which each step lifts back, has less than
    * this kinetic energy [J]: M (g dt)^2/8, or M (g dt)^2/2 where ahead. */
   double lift() const { return contact_ > 0 ? floor_ / (ahead_ ? 1 : 4) : 0; }
-  double slack() const;
 };
 
 }  // namespace lab

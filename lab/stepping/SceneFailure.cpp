@@ -99,8 +99,8 @@ std::optional<Attempt> Scene::half_step(double work) const {
     return std::nullopt;
   const auto finer = anew({stepper_.method_entry(), dt() / 2});
   // With order 1, that is half of the error.
-  const double most =
-      energy_tolerance / 4 * energy_watch()->largest() + stepper_.round_off();
+  const double most = energy_tolerance / 4 * energy_watch()->largest() +
+                      energy_watch()->slack();
   if (!finer->run_to(time(), end_if_interrupted)) return std::nullopt;
   return Attempt{std::abs(finer->energy().total() - energy().total()) <= most,
                  time(), distance(cloth(), finer->cloth())};
