@@ -8,6 +8,7 @@
 
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/Xpbd.hpp"
@@ -170,6 +171,54 @@ TEST(Work, OfAFloorThatLiftsASheet) {
                 0.2)
         << V;
   }
+}
+
+// Pins put held nodes back, so that no energy goes into them, whatever the
+// step. The floor hits the 12 other nodes once: that takes half of its work.
+TEST(Work, OfAnObstacleOnHeldNodesIsNone) {
+  for (double dt : {1e-3, 1e-4}) {
+    Model m = sheet(5, "verlet", dt);
+    m.pins = {{{}, 0, {}, {}, {}}, pin_at_x(0), pin_at_x(1)};
+    m.planes = {{.at = Point(0, 0, -0.1), .motion = {Point(0, 0, 1)}}};
+    Scene s(m);
+    ASSERT_TRUE(s.run_to(0.2));
+    EXPECT_NEAR(gain(s), -12 / 50., 1e-3) << dt;
+  }
+}
+
+// A checkpoint has it, so it is the same for any number of threads.
+TEST(Flow, WhatContactTookHasTheSameBits) {
+  double first = 0;
+  for (int threads : {1, 2, 3}) {
+    Sweep::set_threads(threads);
+    Model m = sheet(70, "verlet", 5e-4);
+    m.gravity = grav,
+    m.planes = {{.at = Point(0, 0, -0.01), .friction = 0.3, .motion = {}}};
+    m.sheets[0].velocity = Point(1, 0.3, 0);
+    Scene s(m);
+    ASSERT_TRUE(s.run_to(0.15));
+    if (threads == 1) first = s.flow().contact;
+    EXPECT_GT(first, 0.01);
+    EXPECT_EQ(s.flow().contact, first) << threads;
+  }
+  Sweep::set_threads(0);
+}
+
+// Drag that takes most of a velocity in a step: that of a flight is exact, that
+// of a fall to a few percent.
+TEST(Work, OfStrongDragIsThatOfTheStep) {
+  for (double gravity : {0., grav})
+    for (double dt : {0.02, 0.1}) {
+      Model m = sheet(3, "verlet", dt);
+      m.sheets[0].velocity = Point(1, -0.5, 2);
+      m.gravity = gravity, m.damping = 1;  // gamma = 9/s
+      Scene s(m);
+      s.watch_energy(1);
+      ASSERT_TRUE(s.run_to(1));
+      EXPECT_LT(std::abs(s.energy_watch()->off()),
+                (gravity > 0 ? 0.05 : 1e-6) * s.flow().drag)
+          << gravity << ' ' << dt;
+    }
 }
 
 // A ball pushes: no energy comes from nothing, and none is left out.

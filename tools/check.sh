@@ -228,16 +228,6 @@ threads() {
 programs() {
   in_folder . cloth work_precision stability_map bench bench_rounds examples
 }
-# Frames of a cloth that tears, read by VTK.
-vtk() {
-  local folder=build/check/vtk
-  rm -rf "$folder" && in_folder . cloth && mkdir "$folder" &&
-    build/check/cloth data/grid1.nodes data/grid1.tets --headless --t-end 0.75 \
-      --vtp "$folder/vtp" --ply "$folder/ply" \
-      --csv "$folder/table.csv" --every 1 &&
-    tools/check_vtk.py "$folder/vtp" "$folder/table.csv" \
-      --ply "$folder/ply"
-}
 # Does advice still do what it did? How often it is right is in
 # lab/advice/README.md, from more scenes.
 advice() {
@@ -334,7 +324,6 @@ turns() {
   turn submit    "$limit" tools/test_submit.sh
   turn sweep     "$limit" tools/test_sweep.sh
   turn deps      "$limit" tools/test_deps.sh
-  turn vtk       "$limit" vtk
   turn grids     "$limit" same_grids
 }
 one_half() { turns; }

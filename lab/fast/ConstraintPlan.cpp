@@ -1,6 +1,7 @@
 #include "lab/fast/ConstraintPlan.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "lab/fast/Energy.hpp"
@@ -53,9 +54,21 @@ void HoldingConstraint::project(Cloth& g, double t, unsigned first,
 }
 
 void SweptConstraint::archive(Archive& a) const {
-  auto& [work, moment, torn, taken] = exchange_;
-  a(work)(moment)(torn)(taken);
-  a.require(std::isfinite(work + moment + torn + taken));
+  auto& [work, moment, torn, none] = exchange_;
+  a(work)(moment)(torn)(taken_);
+  a.require(std::isfinite(work + moment + torn + exchange().taken));
+}
+
+void SweptConstraint::note_taken(double energy, unsigned first) const {
+  // Contact is rare, so one for all is enough. The page has no std::mutex.
+  static std::atomic_flag busy;
+  if (!(energy > 0)) return;
+  while (busy.test_and_set(std::memory_order_acquire)) {
+  }
+  const std::size_t tile = first / FlatCloth::tile;
+  if (tile >= taken_.size()) taken_.resize(tile + 1);
+  taken_[tile] += energy;
+  busy.clear(std::memory_order_release);
 }
 
 namespace {
@@ -93,7 +106,7 @@ class Projecting final : public NodewiseConstraint {
           c_.project(n);
           taken -= energy_of(n);
         });
-    note_taken(taken);
+    note_taken(taken, first);
   }
 
  private:
@@ -329,8 +342,9 @@ void WatchedConstraint::operator()(Cloth& g, double t) const {
     if (n.id() >= before_.size()) continue;  // added since
     auto place = inner_.first_hit(before_[n.id()], n.position());
     if (!place) continue;
-    if (count_++ == 0)
-      first_ = {n.index(), norm(n.position() - before_[n.id()])};
+    // A shorter way passes less than 1/128 of the radius below the surface.
+    const double way = norm(n.position() - before_[n.id()]);
+    if (way > inner_.thinnest() / 4 && count_++ == 0) first_ = {n.index(), way};
     n.position() = *place;
   }
   inner_(g, t);

@@ -97,7 +97,11 @@ class SweptConstraint : public ZeroConstraint {
   const Traits& traits() const { return traits_; }
   /** What its calls since it was made have exchanged, without the work on held
    * nodes, which EnergyBalance adds up. */
-  const Exchange& exchange() const { return exchange_; }
+  Exchange exchange() const {
+    Exchange all = exchange_;
+    for (double energy : taken_) all.taken += energy;
+    return all;
+  }
   void archive(Archive& a) const;
 
   /** Project the nodes of @a g with ids in [first, last) that are in use. The
@@ -113,19 +117,15 @@ class SweptConstraint : public ZeroConstraint {
                           const PlaceVisitor& /*use*/) const {}
 
  protected:
-  mutable Exchange exchange_;
-  /** Contact took @a energy [J]. Several threads may say so at once. */
-  void note_taken(double energy) const {
-    if (!(energy > 0)) return;
-    double before = 0, after = 0;
-    __atomic_load(&exchange_.taken, &before, __ATOMIC_RELAXED);
-    do after = before + energy;
-    while (!__atomic_compare_exchange(&exchange_.taken, &before, &after, true,
-                                      __ATOMIC_RELAXED, __ATOMIC_RELAXED));
-  }
+  mutable Exchange exchange_;  // without taken
+  /** Contact took @a energy [J] of the part that begins with id @a first.
+   * Several threads may say so at once, each of other parts: the sum has the
+   * same bits for any number of threads. */
+  void note_taken(double energy, unsigned first = 0) const;
 
  private:
   Traits traits_;
+  mutable std::vector<double> taken_;  // by tile of the first node
 };
 
 /** A constraint that projects each node independently: derived classes define

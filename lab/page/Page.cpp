@@ -16,6 +16,7 @@
 #include "lab/page/PageScenes.hpp"
 #include "lab/scenes/Json.hpp"
 #include "lab/scenes/Measure.hpp"
+#include "lab/scenes/Warnings.hpp"
 
 namespace lab {
 
@@ -23,12 +24,17 @@ namespace {
 
 using json::Json, json::list, json::members, json::object;
 
-/** The warning of ./cloth about the run of @a s; "" if there is none. */
+/** The first warning of ./cloth about the run of @a s, about the scene or, as
+ * long as that takes once, with a remedy; "" if there is none. */
 std::string warning_text(const Scene& s) {
-  const auto& watch = s.energy_watch();
-  const std::string missed = s.missed_text();
-  return missed.empty() && !s.control() && watch->gains() ? watch->gain_text()
-                                                          : missed;
+  if (s.steps() == 0) {
+    const auto all = warnings(s.model(), s.mesh().mesh, s.cloth(), s.dt());
+    if (!all.empty()) return all[0];
+  }
+  if (const std::string missed = s.missed_text(); !missed.empty())
+    return missed;
+  if (s.failure() || s.control() || !s.energy_watch()->gains()) return "";
+  return s.energy_watch()->gain_text() + "; " + s.remedy();
 }
 
 Json json_of(const RunReadings& r) {

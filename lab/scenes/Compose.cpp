@@ -433,12 +433,19 @@ CombinedConstraints constraint_of(const Model& m, const Cloth& g,
     all.push_back(
         std::make_shared<decltype(constraint)>(std::move(constraint)));
   };
+  std::vector<bool> is_held(arrays(g).node_slots());
+  for (const HeldNodes& h : held)
+    for (const auto& [id, place] : h.nodes) is_held[id] = true;
+  const auto add_obstacle = [&](auto obstacle) {
+    obstacle.leave(is_held);
+    add(std::move(obstacle));
+  };
   for (const Ball& b : m.tears) add(TearConstraint(b));
   if (m.tear_strain) add(StrainConstraint(*m.tear_strain));
   for (const Wall& w : m.planes)
-    add(WallConstraint(w.at, w.out(), w.motion, w.friction));
+    add_obstacle(WallConstraint(w.at, w.out(), w.motion, w.friction));
   for (const Solid& s : m.spheres)
-    add(BallConstraint(s.ball, s.motion, s.friction));
+    add_obstacle(BallConstraint(s.ball, s.motion, s.friction));
   for (const HeldNodes& h : held) {
     std::vector<PinConstraint::Pin> pins;
     for (const auto& [id, place] : h.nodes)

@@ -34,6 +34,7 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 
 double Touchable::touch(Node n, double depth, const Point& out,
                         const Point& velocity) const {
+  if (n.id() < held_.size() && held_[n.id()]) return 0;
   const double before = normSq(n.value().vel - velocity);
   const double work = contact::touch(n, depth, out, velocity, friction_);
   if (!traits().nodewise)
@@ -62,7 +63,7 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
       [&](Node n) {
         taken += touch(n, -height(n.position()), normal_, velocity);
       });
-  note_taken(taken);
+  note_taken(taken, first);
 }
 
 // ----------------------------------------------------------------------- Ball
@@ -89,7 +90,7 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
             distance > 0 ? from_center / distance : Point(0, 0, 1);
         taken += touch(n, ball.radius - distance, out, velocity);
       });
-  note_taken(taken);
+  note_taken(taken, first);
 }
 
 // --------------------------------------------------------------------- Strain

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
@@ -55,6 +56,13 @@ class Touchable : public NodewiseConstraint {
         friction_(friction) {
     assert(friction >= 0);
   }
+
+ public:
+  /** Do not act on nodes that are @a held, by id: pins put them back, so they
+   * would get that energy in each step. */
+  void leave(std::vector<bool> held) { held_ = std::move(held); }
+
+ protected:
   /** contact::touch(), and count the work.
    * @return the kinetic energy that it took, relative to the obstacle [J] */
   double touch(Node n, double depth, const Point& out,
@@ -62,6 +70,7 @@ class Touchable : public NodewiseConstraint {
 
  private:
   double friction_;
+  std::vector<bool> held_;
 };
 
 /** A half space bounded by a plane, which no node enters.

@@ -109,10 +109,8 @@ void EnergyBalance::find_carrier(const Cloth& g, double t,
 // ---------------------------------------------------------------------- Watch
 
 EnergyWatch::EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
-                         double gamma, double floor, double round_off,
-                         bool ahead)
+                         double floor, double round_off, bool ahead)
     : dt_(dt),
-      sums_(gamma * dt * gamma * dt / 4),
       floor_(floor),
       round_off_(round_off),
       ahead_(ahead),
@@ -141,14 +139,13 @@ double EnergyWatch::share() const {
   return counts ? off() / seen_.scale : 0;
 }
 
-/** Tolerated in addition [J]: round-off; 2 % and (gamma dt)^2/4 of drag and
- * work, as in a steady fall the trapezoidal rule errs by (gamma dt)^2/6. Where
- * velocities are one step ahead of positions, fall() and, after n looks, one of
- * n of the largest internal energy: n steps after the start from rest, the
- * kinetic energy is by that share too large. */
+/** Tolerated in addition [J]: round-off; 2 % of drag and work. Where velocities
+ * are one step ahead of positions, fall() and, after n looks, one of n of the
+ * largest internal energy: n steps after the start from rest, the kinetic
+ * energy is by that share too large. */
 double EnergyWatch::slack() const {
   const double early = ahead_ ? fall() + seen_.scale / std::max(looks_, 1) : 0;
-  return round_off_ + (0.02 + sums_) * passed_ + early;
+  return round_off_ + 0.02 * passed_ + early;
 }
 
 double EnergyWatch::tolerance() const {

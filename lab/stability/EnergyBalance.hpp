@@ -167,11 +167,10 @@ struct Swings {
 class EnergyWatch {
  public:
   /** @param e, flow at the start   @param dt the step [s]
-   * @param gamma largest of drag [1/s]
    * @param floor, round_off of the DivergenceGuard [J]
    * @param ahead MethodInfo::ahead() */
   EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
-              double gamma, double floor, double round_off, bool ahead);
+              double floor, double round_off, bool ahead);
 
   /** From now on the step is @a dt; another method may be @a ahead, too. */
   void change_step(double dt, bool ahead) { dt_ = dt, ahead_ |= ahead; }
@@ -217,7 +216,7 @@ class EnergyWatch {
   void archive(Archive& a);
 
  private:
-  double dt_, sums_, floor_, round_off_;  // sums_: their error [1]
+  double dt_, floor_, round_off_;
   bool ahead_;
   Swings seen_;
   double start_;  // the first b [J]

@@ -22,6 +22,8 @@ class NodeStates {
    * nodes removed since stay removed.  O(N) */
   void restore(Cloth& g) const;
   void archive(Archive& a);
+  std::span<const Point> positions() const { return position_; }
+  std::span<const NodeData> values() const { return value_; }
 
  private:
   std::vector<Point> position_;

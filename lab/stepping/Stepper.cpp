@@ -136,7 +136,7 @@ void Stepper::start_control() {
 
 void Stepper::start_drag() {
   drag_ = force_->drag(), largest_gamma_ = largest_gamma(system_.cloth, drag_);
-  drag_power_ = drag_.power(system_.cloth, system_.wind), sampled_ = time();
+  keep_sample();
 }
 
 void Stepper::follow_drag() {
@@ -152,8 +152,7 @@ void Stepper::watch_energy(double t_end) {
   if (!control_) start_drag();
 }
 void Stepper::start_watch() {
-  watch_.emplace(energy(), flow(), clock_.dt,
-                 largest_gamma(system_.cloth, force_->drag()), guard_->floor(),
+  watch_.emplace(energy(), flow(), clock_.dt, guard_->floor(),
                  guard_->round_off(), entry_.info.ahead());
 }
 
@@ -255,6 +254,17 @@ int Stepper::drag_interval() const {
                         double(StepControl::look_interval)));
 }
 
+/** Remember the state in which drag is sampled. */
+void Stepper::keep_sample() {
+  drag_power_ = drag_.power(system_.cloth, system_.wind), sampled_ = time();
+  if (drag_is_strong()) drag_from_.keep(system_.cloth);
+}
+
+/** Does drag take much of a velocity in a step? Then it is sampled in each. */
+bool Stepper::drag_is_strong() const {
+  return !control_ && largest_gamma_ * clock_.dt > 0.1;
+}
+
 /** Add what drag took since the last sample, if velocities may have changed
  * since then, or if there is a check @a now. */
 void Stepper::sample_drag(bool now) {
@@ -269,8 +279,11 @@ void Stepper::sample_drag(bool now) {
   // unless it began with a jump of held nodes, whose work has that error, too.
   if (follows) loss -= drag_owed_ * (change - drag_change_) * h / 12;
   drag_owed_ = follows || works(system_, clock_) ? 1 : 2;
+  if (drag_is_strong())
+    loss = drag_.loss(system_.cloth, system_.wind, h, drag_from_.positions(),
+                      drag_from_.values());
   balance_->add_drag(loss);
-  drag_power_ = power, sampled_ = time();
+  keep_sample();
   drag_change_ = change, drag_step_ = jumped_ ? 0 : h;
 }
 
@@ -384,7 +397,7 @@ void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
   clock_ = clock;
   balance_->resume(system_.cloth, time(), constraint_, flow);
   method_->restart();
-  sampled_ = time(), drag_power_ = drag_.power(system_.cloth, system_.wind);
+  keep_sample();
   drag_step_ = 0;
   keep_checked();
 }
@@ -428,6 +441,7 @@ void Stepper::archive(Archive& a) {
       sampled_)(drag_power_)(drag_change_)(drag_step_)(drag_owed_);
   if (a.loads())
     evaluations_ = evaluated - force_->evaluations(), work_ = worked;
+  if (a.loads() && drag_is_strong()) drag_from_.keep(system_.cloth);
   a.require(clock_.dt == (control_ ? clock_.dt : step_.dt) && evaluated >= 0 &&
             std::min({worked.inner, worked.newton, worked.products,
                       worked.factors}) >= 0 &&

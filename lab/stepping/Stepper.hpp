@@ -250,8 +250,9 @@ class Stepper {
   double sampled_ = 0, drag_power_ = 0;  // time of last sample [s]; then [W]
   // How the power changed in that step [W]; its length [s], 0: it jumped.
   double drag_change_ = 0, drag_step_ = 0;
-  int drag_owed_ = 2;    // steps that the next correction is for
-  bool jumped_ = false;  // a velocity jumps at the end of the last step
+  NodeStates drag_from_;  // the state of the last sample, of strong drag
+  int drag_owed_ = 2;     // steps that the next correction is for
+  bool jumped_ = false;   // a velocity jumps at the end of the last step
   std::optional<EnergyWatch> watch_;
   int watch_interval_ = 1;
   long long evaluations_ = 0;  // besides those of force_
@@ -270,6 +271,8 @@ class Stepper {
   int steps_to_check(int most) const;
   int drag_interval() const;
   void sample_drag(bool now);
+  void keep_sample();
+  bool drag_is_strong() const;
   bool some_steps(int most);
   bool judge(const Energies& e);
   void keep(Snapshot& s) const;
