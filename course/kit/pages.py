@@ -32,15 +32,19 @@ OPEN = re.compile(r"^<!-- open\n(.*?)^-->\n", re.MULTILINE | re.DOTALL)
 TAG = re.compile(r"\b(HW *\??= *)[A-Za-z0-9][\w.-]*")
 
 
-def worth(task: tasks.Task) -> str:
-    return f"{task.points} extra" if task.extra else task.worth
+def worth(task: tasks.Task, course: tasks.Course) -> str:
+    if task.extra:
+        return course.say("{} extra", task.points)
+    return course.say("1 point" if task.points == 1 else "{} points",
+                      task.points)
 
 
-def opened(hints: tuple[str, ...]) -> str:
+def opened(hints: tuple[str, ...], course: tasks.Course) -> str:
     """The hints of a task as HTML: each is inside of the one before it."""
     inner = ""
     for number, hint in reversed([*enumerate(hints, 1)]):
-        inner = (f"<details><summary>Hint {number}</summary>"
+        inner = (f"<details><summary>{course.say('Hint {}', number)}"
+                 "</summary>"
                  f"{html.escape(hint)}{inner}</details>")
     return inner
 
@@ -49,32 +53,34 @@ def of_section(id: str, course: tasks.Course, hints: bool) -> list[str]:
     """What is handed in of a section."""
     own = [task for task in course.tasks.values() if task.section.id == id]
     if not own:
-        return ["Nothing: this section is not part of the homework."]
+        return [course.say(
+            "Nothing: this section is not part of the homework.")]
     lines = []
     for task in own:
         lines += textwrap.wrap(
-            f"- **{task.title}**, {worth(task)}: {task.says}", 80,
+            f"- **{task.title}**, {worth(task, course)}: {task.says}", 80,
             subsequent_indent="  ", break_long_words=False,
             break_on_hyphens=False)
-        lines += ["  " + opened(task.hints)] * hints
+        lines += ["  " + opened(task.hints, course)] * hints
     total = sum(task.counted for task in own)
     together = "" if all(task.extra for task in own) else (
-        f"Together {total} points. ")
-    return [*lines, "", *textwrap.wrap(
-        f"{together}`make test SECTION={own[0].section.number}` shows which"
-        f" tests pass; `make hint TASK={own[0].shown}` opens a hint, and each"
-        " time the next one. Commit your work, then hand it in:"
-        f" `make submit HW={course.tag}`.", 80, break_on_hyphens=False)]
+        course.say("Together {} points.", total) + " ")
+    return [*lines, "", *textwrap.wrap(together + course.say(
+        "{} shows which tests pass; {} opens a hint, and each time the next "
+        "one. Commit your work, then hand it in: {}.",
+        f"`make test SECTION={own[0].section.number}`",
+        f"`make hint TASK={own[0].shown}`", f"`make submit HW={course.tag}`"),
+        80, break_on_hyphens=False)]
 
 
 def of_course(course: tasks.Course) -> list[str]:
     """A table of all tasks that count."""
-    rows = ["| section | task | points |", "|---|---|---|"]
+    rows = [course.say("| section | task | points |"), "|---|---|---|"]
     for task in course.tasks.values():
         if task.points:
-            shown = worth(task) if task.extra else task.points
+            shown = worth(task, course) if task.extra else task.points
             rows.append(f"| {task.section.number} | {task.title} | {shown} |")
-    return rows + [f"| | together | {course.points} |"]
+    return rows + [course.say("| | together | {} |", course.points)]
 
 
 def of_level(text: str, level: str) -> str:
@@ -89,6 +95,13 @@ def named(text: str, course: tasks.Course) -> str:
     return TAG.sub(lambda found: found[1] + course.tag, text)
 
 
+def translated(name: str, text: str, course: tasks.Course) -> str:
+    """The page course/NAME in the language of the course, if it has one."""
+    path = COURSE / "words" / course.language / name
+    return (path.read_text(encoding="utf-8").replace("](../../", "](")
+            if path.is_file() else text)
+
+
 def filled(text: str, course: tasks.Course, hints: bool = False) -> str:
     """The text of a page with its places filled, and with the hints or not."""
     return PLACE.sub(lambda place: "\n".join(
@@ -101,7 +114,7 @@ def faults(text: str, section: tasks.Section,
     """What is wrong with the page of a section, as LINE: what."""
     longest = max(len(of_level(filled(text, course), level).splitlines())
                   for level in LEVELS)
-    if longest > LONGEST:
+    if longest > LONGEST and course.language == "en":
         yield (f"{LONGEST}: goes on to line {longest}, expected at most"
                f" {LONGEST}")
     if re.search("^<!-- (end )?guided|^<!-- open|^-->", of_level(text, "open"),
@@ -110,8 +123,8 @@ def faults(text: str, section: tasks.Section,
     if section.id not in PLACE.findall(text):
         yield f"1: has no place for tasks: <!-- tasks {section.id} -->"
     for part in PARTS:
-        if part not in text:
-            yield f"1: has no {part}"
+        if course.say(part) not in text and part not in text:
+            yield f"1: has no {course.say(part)}"
 
 
 def check(course: tasks.Course) -> list[str]:
@@ -124,7 +137,8 @@ def check(course: tasks.Course) -> list[str]:
                          f"{section.page}")
         elif section.page:
             wrong += [f"course/{section.page}:{fault}" for fault in faults(
-                page.read_text(encoding="utf-8"), section, course)]
+                translated(section.page, page.read_text(encoding="utf-8"),
+                           course), section, course)]
     return wrong
 
 

@@ -90,7 +90,9 @@ def tree(kind: str, level: str = "guided") -> Files:
         if name.endswith("Makefile"):
             content = tasks.numbered(content.decode(), course.numbers).encode()
         if name.endswith((".md", ".sh", "Makefile")):
-            text = pages.named(content.decode(), course)
+            text = pages.named(pages.translated(pathlib.Path(name).name,
+                                                content.decode(), course),
+                               course)
             if name.endswith(".md"):
                 text = pages.filled(pages.of_level(text, level), course)
                 text = without_dead_links(text, name, files)

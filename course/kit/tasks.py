@@ -86,6 +86,7 @@ class Course:
     tasks: dict  # id -> Task, in the order of the file; likewise
     dropped: frozenset  # ids of tasks that are not asked for
     numbers: dict  # id of a section -> its number, where that is another
+    language: str
     words: dict  # English sentence -> sentence of the language; {} is a part
 
     @property
@@ -191,7 +192,8 @@ def parse(text: str, name: str = FILE) -> Course:
                sections or data["task"][task.id].get("dropped")}
     return Course(say(data["title"]), data["tag"], tuple(sections),
                   {id: task for id, task in tasks.items() if id not in dropped},
-                  frozenset(dropped), numbers, words)
+                  frozenset(dropped), numbers, data.get("language", "en"),
+                  words)
 
 
 def numbered(text: str, numbers: dict[str, str]) -> str:

@@ -328,13 +328,17 @@ class Repository(unittest.TestCase):
 
     def test_a_renumbered_course(self):
         text = (tasks.ROOT / tasks.FILE).read_text(encoding="utf-8")
-        new = tasks.parse(text.replace('[section."7.1"]',
-                                       '[section."7.1"]\nnumber = "2"'))
+        new = tasks.parse('language = "de"\n' + text.replace(
+            '[section."7.1"]', '[section."7.1"]\nnumber = "2"'))
+        self.assertEqual(pages.check(new), [])
         with unittest.mock.patch("markers.load", lambda: (
                 markers.read_sources(), new)):
             files = starter.tree("starter")
         self.assertTrue(files["pages/7.1.md"][0].startswith(b"# 2 Removal"))
         self.assertIn("tests/2.remove_node.cpp", files)
+        page = files["pages/3.1.md"][0].decode()
+        self.assertTrue(page.startswith("# 3.1 Orte"))
+        self.assertIn("\nZusammen 4 Punkte. `make test SECTION=3.1` z", page)
         for name, (content, _) in files.items():
             if name.startswith(("pages/", "tests/2.", "README", "Graph")):
                 self.assertNotRegex(content, rb"(?<![\d(.$/-])7\.1(?![\d-]|"

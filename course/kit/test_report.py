@@ -312,7 +312,7 @@ class Reports(unittest.TestCase):
         self.assertIn("\n2 position() 0/4.\n  Vorgabe: ", said)
         self.assertIn("\n  Versuch: ein Knoten der Masse 2 kg ohne Kanten.\n"
                       "  Erwartet: alle anderen Knoten bleiben an ihrem Ort.\n"
-                      "  Tipp: Return a", said)
+                      "  Tipp: Geben Sie eine", said)
         self.assertIn('"number": "2.position"', report.as_gradescope(made))
         for english in "{}".join(course.words).split("{}"):
             if len(english.strip(" .:")) > 3:

@@ -64,6 +64,9 @@ class Page:
         self.anchors: list[tuple[str, str, str]] = []
         self.pictures: list[str] = []
         self.text = (ROOT / source).read_text()
+        if source.startswith("course/"):
+            self.text = course_pages.translated(
+                source.removeprefix("course/"), self.text, COURSE)
 
     def at(self, url: str, words: str) -> str:
         """Words on what stands at a link or a picture: FILE:LINE: words."""
