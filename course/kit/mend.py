@@ -20,7 +20,7 @@ SAYS = "this function does not compile: "
 SCOPE = re.compile(r"\b(?:namespace|class|struct|union|enum)\b"
                    r"|\bextern\s{0,100}\"C\"")
 # What has no end goes to the end: each character is looked at once.
-TEXT = re.compile(r"""(["'])(?:\\.|(?!\1)[^\\\n])*+(?:\1|\\?\Z|(?=\n))""")
+TEXT = re.compile(r"""(["'])(?:\\.|(?!\1)[^\\\n])*(?:\1|\\?\Z|(?=\\?\n))""")
 
 
 def functions(text: str) -> Iterator[tuple[int, int]]:
