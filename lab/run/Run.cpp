@@ -421,7 +421,7 @@ void Run::tell_work() const {
 /** Compare with half of the step, if that is fast and dt is fixed. */
 void Run::try_half() {
   const double share = scene_.energy_watch()->is_off() ? 1 : 1 / 4.;
-  if (halved_ || o_.quiet || o_.bounds_error || scene_.control() ||
+  if (halved_ || o_.bounds_error || scene_.control() ||
       scene_.method().adaptive || first_step_ > 0 || interrupted())
     return;
   halved_ = true;
@@ -460,7 +460,11 @@ bool Run::judge() {
   if (kept_energy_) return *kept_energy_;
   const EnergyWatch& watch = *scene_.energy_watch();
   const auto& control = scene_.control();
-  kept_energy_ = control || !watch.gains();
+  const bool gains = !control && watch.gains();
+  if (gains || !o_.quiet) try_half();
+  const bool same = half_ && half_->is_close();
+  // Else the sums of work and drag err, not the motion.
+  kept_energy_ = !gains || (same && scene_.stepper().forgets());
   if (!*kept_energy_) {
     std::string cause;
     try {
@@ -471,8 +475,6 @@ bool Run::judge() {
     std::cerr << "cloth: " << text << '\n';
     warnings_.push_back(text);
   } else if (!o_.quiet) {
-    try_half();
-    const bool same = half_ && half_->is_close();
     if (watch.is_off() && !(same && scene_.stepper().forgets()))
       warn(watch.off_text() + ", which is an error of the method; " +
            scene_.remedy());
