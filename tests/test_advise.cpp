@@ -136,8 +136,9 @@ TEST(Refinement, IsNotDeceivedWhereAPinHoldsOneNode) {
       if (answers.size() < 5) continue;
       const Refinement r = of_answers(answers, true);
       EXPECT_LE(std::abs(r.limit()[0] - 1), r.uncertainty()) << other;
-      if (cells > 20)
+      if (cells > 20) {
         EXPECT_LE(r.uncertainty(), 2 * std::abs(answers.back() - 1)) << other;
+      }
       EXPECT_FALSE(r.asymptotic());
       if (cells == 8 && other < -2) {
         const Refinement any = of_answers(answers);

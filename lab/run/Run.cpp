@@ -422,7 +422,7 @@ void Run::tell_work() const {
 void Run::try_half() {
   const double share = scene_.energy_watch()->is_off() ? 1 : 1 / 4.;
   if (halved_ || o_.bounds_error || scene_.control() ||
-      scene_.method().adaptive || first_step_ > 0 || interrupted())
+      scene_.method().adaptive || interrupted())
     return;
   halved_ = true;
   try {

@@ -161,8 +161,8 @@ Trial try_out(const Model& m, const Shake& shake,
   });
   result.failure = text_of(scene.failure());
   if (const auto& watch = *scene.stepper().energy_watch(); ok && watch.gains())
-    result.failure = watch.gain_text();
-  else if (ok) {
+    result.gain = watch.gain_text();
+  if (ok) {
     result.answer = observer.answer(m, scene);
     if (result.answer.empty())
       result.failure = (m.measure.quantity == Measure::tear_time

@@ -75,6 +75,7 @@ struct Trial {
   std::vector<Answer> earlier;
   static constexpr int looks = 64;
   std::string failure;  ///< why it failed; else empty
+  std::string gain;     ///< why ./cloth would end with status 3; else empty
   double work = 0;      ///< springs times force evaluations and products with
                         ///< a matrix; a factor of it: 10 per node of a side
   double seconds = 0;   ///< duration on this machine
@@ -95,8 +96,7 @@ struct Shake {
   std::array<bool, 3> along = {true, true, true};  ///< x, y, z
 };
 
-/** Run @a m to its end, with steps of step_of(m). A run that ./cloth would end
- * with status 3, as errors have added energy, has failed.
+/** Run @a m to its end, with steps of step_of(m).
  * @param look called with the cloth at the end, unless the run failed
  * @param after called with the scene after each step; it may change the cloth
  * Throws InputError, SceneError; std::invalid_argument as Scene does;
