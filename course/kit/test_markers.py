@@ -509,15 +509,15 @@ class Promises(unittest.TestCase):
 
     def test_what_nothing_holds(self):
         x = frozenset(["x"])
-        breaks = mistakes.Mistake("t", "m", x, breaks="is 1")
-        opens = mistakes.Mistake("t", "allowed: n", open="is 1")
+        breaks = mistakes.Mistake("t", "m", x, breaks=("is 1",))
+        opens = mistakes.Mistake("t", "allowed: n", open=("is 1",))
         with unittest.mock.patch.multiple(
                 promises, clauses=lambda: (("a.md", "f is 1", True),)):
             for number, *entries in (
                     (0, breaks), (0, opens), (1,), (1, breaks, opens),
                     (1, breaks, mistakes.Mistake("t", "allowed: n")),
-                    (1, mistakes.Mistake("t", "m", breaks="is 1")),
-                    (2, mistakes.Mistake("t", "m", x, breaks="is 2"))):
+                    (1, mistakes.Mistake("t", "m", breaks=("is 1",))),
+                    (2, mistakes.Mistake("t", "m", x, breaks=("is 2",)))):
                 with unittest.mock.patch.multiple(
                         mistakes, tables=lambda: ["t"],
                         read=lambda _, found=entries: found):
