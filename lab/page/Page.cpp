@@ -16,7 +16,6 @@
 #include "lab/page/PageScenes.hpp"
 #include "lab/scenes/Json.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/scenes/Warnings.hpp"
 
 namespace lab {
 
@@ -24,13 +23,9 @@ namespace {
 
 using json::Json, json::list, json::members, json::object;
 
-/** The first warning of ./cloth about the run of @a s, about the scene or, as
- * long as that takes once, with a remedy; "" if there is none. */
+/** The warning of ./cloth about the run of @a s; of its energy with a remedy,
+ * which takes as long as to find one; "" if there is none. */
 std::string warning_text(const Scene& s) {
-  if (s.steps() == 0) {
-    const auto all = warnings(s.model(), s.mesh().mesh, s.cloth(), s.dt());
-    if (!all.empty()) return all[0];
-  }
   if (const std::string missed = s.missed_text(); !missed.empty())
     return missed;
   if (s.failure() || s.control() || !s.energy_watch()->gains()) return "";

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <sstream>
 
@@ -418,11 +419,15 @@ void Run::tell_work() const {
   std::cout << "work: " << text << '\n';
 }
 
-/** Compare with half of the step, if that is fast and dt is fixed. */
+/** Compare with half of the step, if that is fast, dt is fixed, and the method
+ * is one of ours: a step that was added may not run twice. */
 void Run::try_half() {
+  const auto is_it = [this](const MethodEntry& m) {
+    return m.info.name == scene_.method().name;
+  };
   const double share = scene_.energy_watch()->is_off() ? 1 : 1 / 4.;
-  if (halved_ || o_.bounds_error || scene_.control() ||
-      scene_.method().adaptive || interrupted())
+  if (halved_ || o_.bounds_error || scene_.control() || interrupted() ||
+      scene_.method().adaptive || std::ranges::none_of(methods, is_it))
     return;
   halved_ = true;
   try {
@@ -447,12 +452,10 @@ void Run::tell_energy() const {
   std::cout << '\n';
 }
 
-/** The gain of energy by steps that were chosen, and what is tolerated. */
 static std::string gain_text(const StepControl& c) {
   std::ostringstream out;
-  out.precision(3);
-  out << "energy gain " << c.state().gain << " J, at most " << c.tolerance()
-      << " J tolerated";
+  out << std::setprecision(3) << "energy gain " << c.state().gain
+      << " J, at most " << c.tolerance() << " J tolerated";
   return out.str();
 }
 
@@ -466,14 +469,13 @@ bool Run::judge() {
   // Else the sums of work and drag err, not the motion.
   kept_energy_ = !gains || (same && scene_.stepper().forgets());
   if (!*kept_energy_) {
-    std::string cause;
+    std::string text = watch.gain_text() + "; ";
     try {
-      cause = scene_.diagnosis().cause_text() + "; ";
+      text += scene_.diagnosis().cause_text() + "; ";
     } catch (const Interrupted&) {  // remedy() says so
     }
-    const std::string text = watch.gain_text() + "; " + cause + scene_.remedy();
-    std::cerr << "cloth: " << text << '\n';
-    warnings_.push_back(text);
+    warnings_.push_back(text + scene_.remedy());
+    std::cerr << "cloth: " << warnings_.back() << '\n';
   } else if (!o_.quiet) {
     if (watch.is_off() && !(same && scene_.stepper().forgets()))
       warn(watch.off_text() + ", which is an error of the method; " +
@@ -486,14 +488,12 @@ bool Run::judge() {
   return *kept_energy_;
 }
 
-/** What steps were chosen, and what they did to the energy. */
 void Run::tell_steps(const StepControl& c) const {
   const auto& r = c.report();
   std::ostringstream out;
-  out.precision(3);
-  out << "dt from " << r.shortest << " to " << r.longest << " s: shortened "
-      << r.shortened << " times, lengthened " << r.lengthened << " times, "
-      << r.taken_back << " steps taken back; ";
+  out << std::setprecision(3) << "dt from " << r.shortest << " to " << r.longest
+      << " s: shortened " << r.shortened << " times, lengthened "
+      << r.lengthened << " times, " << r.taken_back << " steps taken back; ";
   std::cout << out.str() << gain_text(c) << '\n';
 }
 
