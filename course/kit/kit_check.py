@@ -215,12 +215,12 @@ def main() -> bool:
         if faults := promises.faults():
             raise mistakes.MistakeError("\n".join(faults))
         check = Check(Cases())
+        if not only:
+            programs(check)
+        check.all(only)
     except (markers.MarkerError, tasks.TasksError, once.KitError,
             mistakes.MistakeError) as error:
         sys.exit(f"kit-check: {error}")
-    if not only:
-        programs(check)
-    check.all(only)
     print(f"{check.passed} passed, {check.failed} failed")
     return check.failed != 0
 

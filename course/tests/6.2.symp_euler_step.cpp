@@ -7,10 +7,10 @@
 namespace kit {
 
 template <typename G, typename F, typename C>
-static void step_with(G& g, double t, double dt, F& force, C& constraint) {
+static double step_with(G& g, double t, double dt, F& force, C& constraint) {
   if constexpr (must_compile ||
                 requires { ::symp_euler_step(g, t, dt, force, constraint); })
-    ::symp_euler_step(g, t, dt, force, constraint);
+    return ::symp_euler_step(g, t, dt, force, constraint);
   else
     fail("symp_euler_step(g, t, dt, force, constraint) to compile", "an error");
 }
@@ -50,7 +50,8 @@ TASK("6.2.symp_euler_step", constrained_step) {
   DID("four nodes, two of them corners, all moving; a constraint that adds to ",
       "z, so one more comes to a corner, and doubles velocities; one step of ",
       "dt = ", dt, " from t = ", t);
-  step_with(g, t, dt, force, constraint);
+  const double t_returned = step_with(g, t, dt, force, constraint);
+  answer("time", t_returned);
 
   for (const Point& x : x_seen) answer("seen", x);
   answer_nodes(g, size);
@@ -83,4 +84,5 @@ TASK("6.2.symp_euler_step", constrained_step) {
     const Point velocity_at_last = velocity(g, i);
     CHECK_NEAR(velocity_at_last, b.v[i], 1e-12);
   }
+  CHECK_NEAR(t_returned, t + dt, 1e-12);
 }

@@ -212,10 +212,11 @@ static bool look_at(const char* name) {
   }
   few.add(0, 0, 0, 3, 3, stage > net);
   few.add(22, 0, 0, 3, 3, stage > net);
-  if (!difference<stage>(few, 40).empty()) return false;
   Point sum;
-  if (difference<stage>(thrown, 60, &sum).empty())
-    answer(words("stage ", name, "?"), sum, 1e-6);
+  if (!difference<stage>(few, 40).empty() ||
+      !difference<stage>(thrown, 60, &sum).empty())
+    return false;
+  answer(words("stage ", name, "?"), sum, 1e-6);
   DID("grid1 for 0.3 s, stage ", name, "; a few nodes moved well for 0.04 s");
   all.add(0, 0, 0, 25, 25, stage > net);
   const std::string wrong = difference<stage>(all, 300);

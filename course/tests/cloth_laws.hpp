@@ -83,19 +83,33 @@ struct FreeConstraint : OfLaw<void, Cloth&> {
   void call(Cloth* g, double t) const { call(*g, t); }
 };
 
+/** Base, with the clone() of a Self if Base asks its children for one. */
+template <typename Base, typename Self>
+struct Cloning : Base {};
+template <typename Base, typename Self>
+requires requires(const Base& base) { base.clone(); }
+struct Cloning<Base, Self> : Base {
+  using Copy = decltype(std::declval<const Base&>().clone());
+  virtual Copy clone() const {
+    return Copy(new Self(static_cast<const Self&>(*this)));
+  }
+};
+
 /** The same as a child of Base, whose virtual call has the type Call. */
 template <typename Base, typename Free, typename Call>
 struct Child;
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
-struct Child<Base, Free, R (C::*)(A, B)> : Base, private Free {
+struct Child<Base, Free, R (C::*)(A, B)>
+    : Cloning<Base, Child<Base, Free, R (C::*)(A, B)>>, private Free {
   using Called = Base;
   using Free::Free;
   R operator()(A a, B b) override { return Free::call(a, b); }
 };
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
-struct Child<Base, Free, R (C::*)(A, B) const> : Base, private Free {
+struct Child<Base, Free, R (C::*)(A, B) const>
+    : Cloning<Base, Child<Base, Free, R (C::*)(A, B) const>>, private Free {
   using Called = Base;
   using Free::Free;
   R operator()(A a, B b) const override { return Free::call(a, b); }
@@ -106,14 +120,20 @@ concept HasVirtualCall =
     Complete<Base> && std::is_polymorphic_v<Base> && requires {
   &Base::operator();
 };
+template <typename Base>
+using CallOf = decltype(&Base::operator());
+/** Can a test make a child of Base? It may ask for more than a call. */
+template <typename Base, typename Free>
+concept HasChild =
+    HasVirtualCall<Base> && !std::is_final_v<Base> &&
+    std::is_default_constructible_v<Child<Base, Free, CallOf<Base>>>;
 
-/** A child of First or, if that is no base with a virtual call, of the next
- * one; without any a free one. */
+/** A child of First or, if there can be none, of the next one; without any a
+ * free one. */
 template <typename Free, typename First, typename... Others>
 auto child_of_one_of() {
-  if constexpr (HasVirtualCall<First>)
-    return std::type_identity<
-        Child<First, Free, decltype(&First::operator())>>();
+  if constexpr (HasChild<First, Free>)
+    return std::type_identity<Child<First, Free, CallOf<First>>>();
   else if constexpr (sizeof...(Others) > 0)
     return child_of_one_of<Free, Others...>();
   else
