@@ -177,23 +177,44 @@ class Grading(Programs):
 
 
 class Runner(Programs):
-    def test_looks_away_as_the_grader_does(self):
-        """make test, of a graph that may not be asked for a removed edge."""
-        starter.write(starter.tree("solution"), self.top / "mine")
-        text = markers.solution(markers.open_graph(tasks.load()))
-        for old, new in (
-                ("edge(const Edge& e) {",
-                 "edge(const Edge& e) { assert(e.index_ < num_edges());"),
-                ("    remove_node(*it);\n", "    assert(!remove_node(*it));"
-                 "\n")):
+    """make test, of the graph of the level open, and the cloth solved."""
+    def setUp(self):
+        super().setUp()
+        self.mine = self.top / "mine"
+        starter.write(starter.tree("solution"), self.mine)
+        self.graph = markers.solution(markers.open_graph(tasks.load()))
+
+    def make_test(self, what, file, text, *edits):
+        for old, new in edits:
             self.assertEqual(text.count(old), 1)
             text = text.replace(old, new)
-        (self.top / "mine/Graph.hpp").write_text(text, encoding="utf-8")
-        done = child.run(["make", "test", "SECTION=7.1", "VIEWER=0"], LIMIT,
-                         cwd=self.top / "mine", capture_output=True, text=True)
+        (self.mine / file).write_text(text, encoding="utf-8")
+        return child.run(["make", "test", what, "VIEWER=0"], LIMIT,
+                         cwd=self.mine, capture_output=True, text=True)
+
+    def test_looks_away_as_the_grader_does(self):
+        """A graph that may not be asked for a removed edge; and the test that
+        the page on own tests shows."""
+        page = (once.ROOT / "course/own-tests.md").read_text(encoding="utf-8")
+        (self.mine / "tests/7.1.mine.cpp").write_text(
+            page.split("```cpp\n")[1].split("```")[0], encoding="utf-8")
+        done = self.make_test("SECTION=7.1", "Graph.hpp", self.graph, (
+            "edge(const Edge& e) {",
+            "edge(const Edge& e) { assert(e.index_ < num_edges());"), (
+            "    remove_node(*it);\n", "    assert(!remove_node(*it));\n"))
+        self.assertRegex(done.stdout, r"remove_node\(node\): passed  8/8\n")
         self.assertRegex(done.stdout, r"remove_edge\(edge\): passed  6/6\n")
         self.assertRegex(done.stdout, r"remove_node\(iterator\): FAILED  0/3"
                          r"(\n  .*)*\n  It crashed at Graph\.hpp:\d+; ")
+
+    def test_a_pin_made_for_each_step(self):
+        """As page 7.2 says, where a Node is an index."""
+        (self.mine / "Graph.hpp").write_text(self.graph, encoding="utf-8")
+        cloth = (self.mine / "mass_spring.hpp").read_text(encoding="utf-8")
+        done = self.make_test(
+            "TASK=7.2.grid1", "mass_spring.hpp", cloth,
+            ("if (g.has_node(n)) n.pos", "assert(g.has_node(n)), n.pos"))
+        self.assertRegex(done.stdout, r"grid1: passed  2/2\n", done.stderr)
 
 
 class OwnTests(Programs):

@@ -20,6 +20,8 @@ defined   = $(shell sed -nE 's/.*(Define: |ifndef )(KIT_[A-Z]+)$$/-D\2/p' $(toge
 # Where main() has the stages of the starter, it is compiled in each of them.
 stages    = $(if $(findstring KIT_PROGRAM,$(defined)),$(shell \
               grep -qsw STAGE mass_spring.cpp && echo -DKIT_STAGES))
+# What all programs are built with: another compiler builds them anew.
+built_by  = $(B)/tests.built
 unit      = @mkdir -p $(@D); printf '\#include "%s"\n' $(1) >$(B)/tests/$*.cpp
 
 .PHONY: test section
@@ -50,18 +52,21 @@ hint:
 	  $(B)/hints tests/hints | fold -sw 80
 
 .SECONDEXPANSION:
-$(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame)
+$(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame) $(built_by)
 	@echo '$(CXX) $@'
 	$(call unit,$(together))
 	@$(if $(stages),$(CXX) $(stages) $(of_test) $(defined) $(sanitizer) -o $@ \
-	  $@.cpp $(frame) 2>/dev/null ||) \
-	$(CXX) $(of_test) $(defined) $(sanitizer) -o $@ $@.cpp $(frame)
-$(counted:%=$(B)/tests/%): $(B)/tests/%: tests/%.cpp $(frame)
+	  $(frame) $@.cpp 2>/dev/null ||) \
+	$(CXX) $(of_test) $(defined) $(sanitizer) -o $@ $(frame) $@.cpp
+$(counted:%=$(B)/tests/%): $(B)/tests/%: tests/%.cpp $(frame) $(built_by)
 	@echo '$(CXX) $@'
 	@$(CXX) $(of_test) -O1 -g1 -fsanitize-coverage=trace-pc -c -o $@.o $<
-	@$(CXX) $(CXXFLAGS) -o $@ $@.o $(frame)
-$(frame): $(B)/tests/%.o: tests/%.cpp tests/kit.cpp
+	@$(CXX) $(CXXFLAGS) -o $@ $(frame) $@.o
+$(frame): $(B)/tests/%.o: tests/%.cpp tests/kit.cpp $(built_by)
 	@echo '$(CXX) $@'
-	$(call unit,$^)
+	$(call unit,tests/$*.cpp tests/kit.cpp)
 	@$(CXX) $(of_test) -g1 -c -o $@ $(B)/tests/$*.cpp
+$(built_by): FORCE
+	@mkdir -p $(B); echo '$(CXX) $(common) $(debug) $(CPPFLAGS) $(CXXFLAGS)' | \
+	  cmp -s - $@ || echo '$(CXX) $(common) $(debug) $(CPPFLAGS) $(CXXFLAGS)' >$@
 -include $(wildcard $(B)/tests/*.d)

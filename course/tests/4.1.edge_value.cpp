@@ -84,15 +84,15 @@ static void check_values_while_a_graph_grows(G& g) {
   constexpr bool there = must_compile || requires {
     add_edge(g, a, b).value().K = 1;
   };
-  need<there>("Graph<V, Spring> and e.value().K = 1");
+  need<there>("Graph<V, SpringValue> and e.value().K = 1");
   if constexpr (there) {
     DID("a graph of 40 nodes grows edge by edge, each with a value of struct ",
-        "Spring");
+        "SpringValue");
     for (int v = 2; v < 40; ++v) {
       add_node(g, place(v), Mass());
       auto n = node_at(g, v), before = node_at(g, v - 1);
-      add_edge(g, n, before, Spring{v + 0.5, 1});
-      add_edge(g, node_at(g, 0), n, Spring{-1, -double(v)});
+      add_edge(g, n, before, SpringValue{v + 0.5, 1});
+      add_edge(g, node_at(g, 0), n, SpringValue{-1, -double(v)});
     }
     for (int v = 2; v < 40; ++v) {
       auto n = node_at(g, v);

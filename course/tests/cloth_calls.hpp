@@ -128,7 +128,7 @@ class Pins {
   }
   static ClothNode node_at(Cloth& g, const Point& p) {
     int i = 0;
-    while (!(place(g, i) == p)) ++i;
+    while (!(place(g, i) == p) && i + 1 < int(g.num_nodes())) ++i;
     return node_of(g, i);
   }
 };

@@ -55,10 +55,10 @@ struct Mass {
   double kg = 1;
   Point velocity = Point(0, 0, 0);
 };
-struct Spring {
+struct SpringValue {
   double K = 1, L = 2;
 };
-using StructGraph = GraphOf<Mass, Spring>;
+using StructGraph = GraphOf<Mass, SpringValue>;
 
 // --------------------------------------------------- Members, as they may be
 

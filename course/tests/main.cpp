@@ -20,6 +20,8 @@
 #include <filesystem>
 #include <iostream>
 #include <regex>
+#include <set>
+#include <sstream>
 
 #include "check.hpp"
 
@@ -125,6 +127,17 @@ std::string content(std::FILE* file) {
   return all;
 }
 
+/** The lines of @a text, without those that came before: what a test looks away
+ * from may fail at each look. */
+std::string each_once(const std::string& text) {
+  std::set<std::string> seen;
+  std::istringstream lines(text);
+  std::string all;
+  for (std::string line; std::getline(lines, line);)
+    if (seen.insert(line).second) all += line + '\n';
+  return all;
+}
+
 /** " at FILE:LINE" of the first line in @a trace that is in this folder, where
  * the student's own files are, or nothing. */
 std::string own_line(const std::string& trace) {
@@ -157,13 +170,14 @@ bool run_apart(const Task& task) {
     std::cout << "can't start a process\n";
     return false;
   }
-  const std::string said = errors ? content(errors) : "";
+  std::string said = errors ? content(errors) : "";
   if (errors) std::fclose(errors);
   const int exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (exit != has_passed && exit != has_failed && last().aspect & ~crashing) {
     crashing |= last().aspect;
     return run_apart(task);
   }
+  if (exit == has_passed) said = each_once(said);
   std::cerr << said;
   if (exit == has_passed || exit == has_failed) return exit == has_passed;
   std::cout << heading(task, false);
