@@ -14,12 +14,12 @@ done
 
 starter=$(mktemp -d)
 trap 'rm -rf "$starter"' EXIT
-in_copy() {  # starter|solution PAGE, whose program begins with its name
+in_copy() {  # starter|solution PAGE [LEVEL]; its program begins with its name
   local name
   name=$(sed -n 's|^// \([a-z]*\.cpp\).*|\1|p' "course/$2.md")
-  [ -d "$starter/$1" ] || make -s "$1" LEVEL=guided OUT="$starter/$1" ||
-    return
-  cd "$starter/$1" && cp "$OLDPWD/tools/check_commands.sh" tools &&
+  local folder=$starter/$1${3:-}
+  [ -d "$folder" ] || make -s "$1" LEVEL="${3:-}" OUT="$folder" || return
+  cd "$folder" && cp "$OLDPWD/tools/check_commands.sh" tools &&
     sed -n '/^```cpp$/,/^```$/p' "pages/$2.md" | grep -v '^```' >"$name" &&
     env -u CXXFLAGS tools/check_commands.sh "pages/$2.md"  # -g1 hides variables
 }
@@ -29,7 +29,8 @@ for page in 3.2 5.1 6.2; do
 done
 echo course/0.md
 if command -v gdb >/dev/null; then
-  (in_copy starter 0) || status=1
+  (in_copy starter 0 open) || status=1
+  (in_copy starter 0 guided) || status=1
 else
   echo "skipped: course/0.md: gdb is missing"
 fi
