@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "lab/charts/Problem.hpp"
-#include "lab/scenes/Contact.hpp"
 
 namespace lab {
 
@@ -35,14 +34,8 @@ inline Problem pulled_chain(double t_end, double until = HUGE_VAL) {
   const Point velocity(0.5, 0, 0);
   Problem p =
       chain_problem("pulled", "chain with a wall that moves", t_end, chain);
-  p.driven = true;
-  p.constraint = [=](const Cloth& g) {
-    const auto pin = [&g](unsigned i) {
-      return PinConstraint(std::vector{g.node(i)});
-    };
-    return make_combined_constraints(
-        pin(0), PinnedNodes(pin(chain.n + 1), {velocity, until}));
-  };
+  p.mesh.held = {0};
+  p.pins = {{.node = chain.n + 1, .motion = {velocity, until}}};
   p.exact = [=](double t) {
     std::vector<Point> x = chain.exact(t);
     for (unsigned j = 0; j < x.size(); ++j)
@@ -55,17 +48,7 @@ inline Problem pulled_chain(double t_end, double until = HUGE_VAL) {
 /** The 5 x 5 cloth with drag, one edge held, the other one moved. */
 inline Problem moving_edge(double t_end) {
   Problem p = grid_problem("edge", "5 x 5 cloth, one edge moves", t_end, 5);
-  p.driven = true;
-  p.constraint = [](const Cloth& g) {
-    const auto at = [&g](double x) {
-      std::vector<Node> held;
-      for (Node n : g.nodes())
-        if (n.position().x == x) held.push_back(n);
-      return PinConstraint(held);
-    };
-    return make_combined_constraints(
-        at(0), PinnedNodes(at(1), {Point(0.1, 0.15, 0.25)}));
-  };
+  p.pins = {{.x = 0}, {.x = 1, .motion = {Point(0.1, 0.15, 0.25)}}};
   return p;
 }
 

@@ -89,9 +89,7 @@ TEST_P(CourseGrid, IsBoundedBelowTheLimitAndNotAbove) {
   if (side > setting("LIMITS_SIDES", 25))
     GTEST_SKIP() << "make stability-soak does larger grids";
   Problem p = grid_problem("", "", side < 20 ? 5 : 2, side);
-  p.build = [side = side, mesh = mesh](Cloth& g) {
-    build_cloth(g, grid_points(side), grid_quads(side), mesh);
-  };
+  p.edges.diagonals = mesh == MeshSprings::diagonals;
   const double omega = highest_omega(p);
   const Start start(p);
   const double omega_bound =

@@ -33,11 +33,10 @@ Edge middle_edge(const Cloth& g) { return g.edge(g.num_edges() / 2 + 1); }
  * edge of which is of 1e6 N/m. */
 Problem stiff_edge(unsigned side, double t_end) {
   Problem p = grid_problem("stiff-edge", "one stiff edge", t_end, side);
-  p.gamma = 0;
-  p.build = [build = p.build](Cloth& g) {
-    build(g);
-    middle_edge(g).value().K = 1e6;
-  };
+  p.damping = 0;
+  const Start s(p);
+  const Edge e = middle_edge(s.cloth);
+  p.mesh.springs = {{e.node1().index(), e.node2().index(), 1e6}};
   return p;
 }
 
@@ -227,33 +226,37 @@ TEST(MollifiedImpulse, HasTheTraceOfTheory) {
  * random: masses, velocities, and which springs are of 1e5 to 1e6 N/m. */
 Problem drawn(const std::string& kind, unsigned seed) {
   std::mt19937 random(seed);
-  const auto draw = [](std::mt19937& r) { return double(r()) / 4294967296.; };
+  const auto draw = [&random] { return double(random()) / 4294967296.; };
   Problem p = grid_problem(kind, kind, 1, 9 + random() % 5);
-  p.gamma = 0;
-  p.build = [=, build = p.build, start = random](Cloth& g) {
-    std::mt19937 random = start;  // each cloth is the same
-    build(g);
-    const double K = std::pow(10, 5 + draw(random));
-    const double spread = draw(random) / 2, speed = draw(random);
-    for (Node n : g.nodes()) {
-      n.value().mass *= 1 + spread * (2 * draw(random) - 1);
-      for (int k : {0, 1, 2}) n.value().vel[k] = speed * (draw(random) - 0.5);
-    }
-    if (kind == "a band")
-      for (Edge e : g.edges())
-        if (e.node1().position().x + e.node2().position().x < 0.01)
-          e.value().K = K;
-    Edge any = g.edge(random() % g.num_edges());
-    if (kind != "a band") any.value().K = K;
-    for (Edge e : any.node1().edges())
-      if (kind == "a triangle" && g.has_edge(e.node2(), any.node2())) {
+  p.damping = 0;
+  Cloth g;
+  p.build(g);
+  const double K = std::pow(10, 5 + draw());
+  const double spread = draw() / 2, speed = draw();
+  for (Node n : g.nodes()) {
+    n.value().mass *= 1 + spread * (2 * draw() - 1);
+    for (int k : {0, 1, 2}) n.value().vel[k] = speed * (draw() - 0.5);
+  }
+  if (kind == "a band")
+    for (Edge e : g.edges())
+      if (e.node1().position().x + e.node2().position().x < 0.01)
         e.value().K = K;
-        for (Edge f : any.node2().edges())
-          if (f.node2() == e.node2()) f.value().K = K;
-        break;
-      }
-    for (int k = 0; k < 2 && kind == "three edges"; ++k)
-      g.edge(random() % g.num_edges()).value().K = K;
+  Edge any = g.edge(random() % g.num_edges());
+  if (kind != "a band") any.value().K = K;
+  for (Edge e : any.node1().edges())
+    if (kind == "a triangle" && g.has_edge(e.node2(), any.node2())) {
+      e.value().K = K;
+      for (Edge f : any.node2().edges())
+        if (f.node2() == e.node2()) f.value().K = K;
+      break;
+    }
+  for (int k = 0; k < 2 && kind == "three edges"; ++k)
+    g.edge(random() % g.num_edges()).value().K = K;
+  p.mesh = net_of(g);
+  // As pins of the scene, these nodes would start at rest.
+  p.pins.clear();
+  p.constraint = [](const Cloth& g) {
+    return make_combined_constraints(PinConstraint(g));
   };
   return p;
 }
@@ -320,13 +323,8 @@ TEST(MollifiedImpulse, TakesForcesByCallAsSoftOnes) {
 // A stiff spring at a wall that moves: its node is right at all inner times.
 TEST(MollifiedImpulse, KeepsItsOrderAtAMovingPin) {
   Problem p = stiff_edge(9, 0.2);
-  p.driven = true;
-  p.constraint = [](const Cloth& g) {
-    const Node n = middle_edge(g).node1();
-    return make_combined_constraints(
-        PinConstraint(g),
-        PinnedNodes(PinConstraint(std::vector{n}), {Point(0, 0, 0.005)}));
-  };
+  p.pins.push_back(
+      {.node = p.mesh.springs[0].i, .motion = {Point(0, 0, 0.005)}});
   const Reference right = reference(p, 4);
   const auto error = [&](long long steps) {
     MollifiedImpulse impulse;

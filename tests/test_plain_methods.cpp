@@ -106,7 +106,7 @@ struct Scene {
   /** The same state, with @a constraint as it was made at time 0. */
   void set(Cloth& g, CombinedConstraints& constraint) const {
     problem.build(g);
-    constraint = problem.constraint(g);
+    constraint = problem.constraints(g);
     std::ranges::copy(arrays(at->cloth).positions(),
                       arrays(g).positions().begin());
     std::ranges::copy(arrays(at->cloth).node_values(),
@@ -114,7 +114,7 @@ struct Scene {
   }
   CombinedForces force() const {
     const GravityForce gravity(problem.gravity);
-    if (problem.driven)
+    if (problem.driven())
       return make_combined_force(gravity, MassSpringForce(), Wind());
     return make_combined_force(gravity, MassSpringForce());
   }
@@ -173,7 +173,7 @@ TEST_P(PlainMethod, EqualsItsTwinOnTheProblemsOfTheCharts) {
     Constraint on_plain(Constraint::List{}), on_fast = on_plain;
     scene.set(plain, on_plain);
     scene.set(fast, on_fast);
-    const double c = scene.problem.gamma / plain.num_nodes();
+    const double c = scene.problem.damping;
     const Force force(scene.force(), c);
     const ForcePlan same(make_combined_force(scene.force(), DampingForce(c)));
     const ConstraintPlan constraint(on_fast);

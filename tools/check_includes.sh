@@ -19,7 +19,7 @@ lab/stability : lab/methods
 lab/scenes    : lab/methods
 lab/stepping  : lab/scenes lab/stability
 lab/advice    : lab/stepping
-lab/charts    : lab/stability
+lab/charts    : lab/stability lab/scenes
 lab/try       : mass_spring lab/methods
 lab/bench     : lab/fast
 lab/live      : lab/stepping

@@ -13,26 +13,16 @@ namespace lab {
 
 Problem stretched_sheet(unsigned side, MeshSprings::Kind mesh, double stretch,
                         double gamma) {
-  auto rim = [side](const Cloth& g) {
-    std::vector<Node> nodes;
-    for (Node n : g.nodes()) {
-      const unsigned i = n.index() / side, j = n.index() % side;
-      if (i == 0 || j == 0 || i + 1 == side || j + 1 == side)
-        nodes.push_back(n);
-    }
-    return make_combined_constraints(PinConstraint(nodes));
-  };
-  return {.name = std::to_string(side),
-          .about = "stretched sheet",
-          .t_end = 1,
-          .gravity = 0,
-          .gamma = gamma,
-          .build =
-              [=](Cloth& g) {
-                build_cloth(g, grid_points(side), grid_quads(side), mesh);
-                for (Point& x : arrays(g).positions()) x *= stretch;
-              },
-          .constraint = rim};
+  Model m;
+  m.name = std::to_string(side), m.t_end = 1, m.gravity = 0;
+  m.sheets = {{.u = Point(stretch, 0, 0),
+               .v = Point(0, stretch, 0),
+               .nodes = {side, side}}};
+  m.rest_length = 1 / stretch;
+  m.edges.diagonals = mesh == MeshSprings::diagonals;
+  m.damping = gamma / (side * side);
+  m.pins = {{.x = 0}, {.x = stretch}, {.y = 0}, {.y = stretch}};
+  return {m, "stretched sheet"};
 }
 
 Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,

@@ -13,22 +13,14 @@
 
 namespace lab {
 
-namespace {
-
-/** Make the cloth and its force. */
-CombinedForces built(const Problem& p, Cloth& cloth) {
-  p.build(cloth);
-  if (p.gamma == 0)
-    return make_combined_force(GravityForce(p.gravity), MassSpringForce());
-  return make_combined_force(GravityForce(p.gravity), MassSpringForce(),
-                             DampingForce(p.gamma / cloth.num_nodes()));
+bool Problem::driven() const {
+  return std::ranges::any_of(pins,
+                             [](const Pin& p) { return p.motion.moves(); });
 }
 
-}  // namespace
-
 Start::Start(const Problem& p)
-    : force(built(p, cloth)),
-      counted(p.constraint(cloth)),
+    : force((p.build(cloth), force_of(p, p.mesh, cloth))),
+      counted(p.constraints(cloth)),
       constraint(counted) {}
 
 double Start::energy() const {
@@ -57,7 +49,7 @@ Outcome run(const Problem& p, Method& method, long long steps, bool guarded) {
   Start s(p);
   std::unique_ptr<DivergenceGuard> guard;
   const double dt = p.t_end / double(steps);
-  if (guarded && !p.driven)
+  if (guarded && !p.driven())
     guard = std::make_unique<DivergenceGuard>(s.cloth, p.gravity, dt);
   Outcome out;
   method.restart();

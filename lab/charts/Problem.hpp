@@ -1,14 +1,14 @@
 #pragma once
 /** @file Problem.hpp
- * Problems for comparing methods: a cloth, its forces and constraints, an end
- * time, and the right answer at that time. */
+ * Problems for comparing methods: a scene, and the right answer at its end. */
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "lab/fast/ConstraintPlan.hpp"
 #include "lab/methods/Method.hpp"
+#include "lab/scenes/Compose.hpp"
 
 namespace lab {
 
@@ -41,25 +41,33 @@ constexpr const char* name_of(Norm norm) {
                                  : "center of mass and energy/(M g)";
 }
 
-/** A problem for methods. */
-struct Problem {
-  std::string name;
+/** A problem for methods: a scene, run by any of them. */
+struct Problem : Model {
   std::string about;  ///< for the title of a chart
-  double t_end;       ///< [s]
   Norm norm = Norm::positions;
-  double gravity = grav;  ///< [m/s^2]
-  double gamma = 0;       ///< drag [1/s]: c = gamma/N
-  /** Held nodes move and do work. Runs are not guarded: energy may grow. */
-  bool driven = false;
   /** Without contact, at rest at the end. Its runs may take four times the
    * effort of others. */
   bool rests = false;
-  /** Build the cloth at t = 0. */
-  std::function<void(Cloth&)> build;
-  std::function<CombinedConstraints(const Cloth&)> constraint;
+  Net mesh;
+  /** What acts in place of its obstacles and pins. */
+  std::function<CombinedConstraints(const Cloth&)> constraint = {};
   /** The exact positions at a time [s], by node id; empty if not known.
    * Such a problem has no drag, so its energy is constant. */
   std::function<std::vector<Point>(double)> exact = {};
+
+  /** Of mesh_of(@a m), or of a net that no scene file describes. */
+  Problem(const Model& m, std::string title)
+      : Problem(m, std::move(title), mesh_of(m)) {}
+  Problem(const Model& m, std::string title, Net net)
+      : Model(m), about(std::move(title)), mesh(std::move(net)) {}
+  /** Held nodes move and do work. Runs are not guarded: energy may grow. */
+  bool driven() const;
+  /** The cloth at t = 0, in an empty graph. */
+  void build(Cloth& g) const { build_model(g, *this, mesh); }
+  /** @pre @a g was just built */
+  CombinedConstraints constraints(const Cloth& g) const {
+    return constraint ? constraint(g) : constraint_of(*this, mesh, g);
+  }
 };
 
 /** A problem at t = 0, ready to run. It can't be copied: pins hold handles into
@@ -156,19 +164,13 @@ Problem chain_problem(std::string name, std::string about, double t_end,
  * is linear: each column is a chain. */
 Problem curtain_problem(std::string name, std::string about, double t_end,
                         unsigned side = 16);
-/** The assignment's cloth on a mesh: diagonals, K [N/m], pinned at its
- * corners, drag c = 1/N. */
-Problem cloth_problem(std::string name, std::string about, double t_end,
-                      std::vector<Point> points, std::vector<Quad> quads,
-                      double K = 100);
-/** The same on a square grid of side x side nodes. */
+/** The assignment's cloth of side x side nodes: diagonals, K [N/m], pinned at
+ * its corners, drag c = 1/N. */
 Problem grid_problem(std::string name, std::string about, double t_end,
                      unsigned side, double K = 100);
 /** A grid of 25 x 25 nodes, held at the side y = 0, with K = 1e6 N/m where x <
  * 0.09 m. */
 Problem mixed_problem();
-/** Pinned at its corners, above the assignment's plane and sphere. */
-CombinedConstraints on_a_ball(const Cloth& g);
 
 /** All problems of the charts. */
 std::vector<Problem> make_problems();

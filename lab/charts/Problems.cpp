@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -27,34 +26,28 @@ std::vector<Point> Chain::exact(double t) const {
 
 Problem chain_problem(std::string name, std::string about, double t_end,
                       Chain chain) {
-  auto build = [chain](Cloth& g) {
-    const unsigned n = chain.n;
-    for (const Point& p : chain.exact(0)) g.add_node(p, {Point(), 1.0 / n});
-    for (unsigned j = 0; j <= n; ++j)
-      g.add_edge(g.node(j), g.node(j + 1), {chain.K, chain.rest / (n + 1)});
-  };
-  auto pins = [n = chain.n](const Cloth& g) {
-    const std::array ends = {g.node(0), g.node(n + 1)};
-    return make_combined_constraints(PinConstraint(std::span(ends)));
-  };
-  return {.name = std::move(name),
-          .about = std::move(about),
-          .t_end = t_end,
-          .gravity = 0,
-          .build = build,
-          .constraint = pins,
-          .exact = [chain](double t) { return chain.exact(t); }};
+  Model m;
+  m.name = std::move(name), m.t_end = t_end, m.gravity = 0;
+  const unsigned n = chain.n;
+  Net net{.points = chain.exact(0)};
+  for (unsigned j = 0; j <= n; ++j)
+    net.springs.push_back({j, j + 1, chain.K, chain.rest / (n + 1)});
+  net.masses.assign(n + 2, 1.0 / n);
+  net.held = {0, n + 1};
+  Problem p(m, std::move(about), net);
+  p.exact = [chain](double t) { return chain.exact(t); };
+  return p;
 }
 
-namespace {
-
-/** A square cloth of n x n nodes, plain mesh, that hangs from its whole upper
- * row and starts unstretched: each column is a chain. */
-struct Curtain {
-  unsigned n = 16;
-  double K = 100;
-
-  std::vector<Point> exact(double t) const {
+Problem curtain_problem(std::string name, std::string about, double t_end,
+                        unsigned n) {
+  Model model;
+  model.name = std::move(name), model.t_end = t_end;
+  model.sheets = {{.v = Point(0, 0, -1), .nodes = {n, n}}};
+  model.edges.diagonals = false;
+  model.pins = {{.z = 0}};
+  Problem p(model, std::move(about));
+  p.exact = [=, K = model.stiffness](double t) {
     const double m = 1.0 / (n * n), width = 1.0 / (n - 1);
     std::vector<double> hangs(n);  // displacement at rest, downwards [m]
     for (unsigned j = 1; j < n; ++j)
@@ -73,87 +66,34 @@ struct Curtain {
     for (unsigned i = 0; i < n; ++i)
       for (unsigned j = 0; j < n; ++j) x.emplace_back(i * width, 0, z[j]);
     return x;
-  }
-  void build(Cloth& g) const {
-    auto points = grid_points(n);
-    for (Point& p : points) p = Point(p.x, 0, -p.y);
-    build_cloth(g, points, grid_quads(n), MeshSprings::plain, K);
-  }
-  CombinedConstraints pins(const Cloth& g) const {
-    std::vector<Node> row;
-    for (unsigned i = 0; i < n; ++i) row.push_back(g.node(i * n));
-    return make_combined_constraints(PinConstraint(row));
-  }
-};
+  };
+  return p;
+}
 
-CombinedConstraints pinned(const Cloth& g) {
-  return make_combined_constraints(PinConstraint(g));
-}
-PinConstraint side_of(const Cloth& g) {
-  std::vector<Node> side;
-  for (unsigned i = 0; i < g.num_nodes(); ++i)
-    if (g.node(i).position().y == 0) side.push_back(g.node(i));
-  return PinConstraint(side);
-}
-CombinedConstraints held_at_a_side(const Cloth& g) {
-  return make_combined_constraints(side_of(g));
-}
-CombinedConstraints torn_by_a_ball(const Cloth& g) {
-  return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                   TearConstraint());
+namespace {
+
+/** grid_problem() as a scene. */
+Model grid(std::string name, double t_end, unsigned side = 25, double K = 100) {
+  Model m;
+  m.name = std::move(name), m.t_end = t_end, m.stiffness = K;
+  m.sheets = {{.nodes = {side, side}}};
+  m.pins = {{.x = 0, .y = 0}, {.x = 1, .y = 0}};
+  m.damping = 1.0 / (side * side);
+  return m;
 }
 
 }  // namespace
 
-Problem curtain_problem(std::string name, std::string about, double t_end,
-                        unsigned side) {
-  const Curtain curtain{.n = side};
-  return {.name = std::move(name),
-          .about = std::move(about),
-          .t_end = t_end,
-          .build = [=](Cloth& g) { curtain.build(g); },
-          .constraint = [=](const Cloth& g) { return curtain.pins(g); },
-          .exact = [=](double t) { return curtain.exact(t); }};
-}
-
-CombinedConstraints on_a_ball(const Cloth& g) {
-  return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
-                                   SphereConstraint());
-}
-
-Problem cloth_problem(std::string name, std::string about, double t_end,
-                      std::vector<Point> points, std::vector<Quad> quads,
-                      double K) {
-  return {
-      .name = std::move(name),
-      .about = std::move(about),
-      .t_end = t_end,
-      .gamma = 1,
-      .build =
-          [points = std::move(points), quads = std::move(quads), K](Cloth& g) {
-            build_cloth(g, points, quads, MeshSprings::diagonals, K);
-          },
-      .constraint = pinned};
-}
-
 Problem grid_problem(std::string name, std::string about, double t_end,
                      unsigned side, double K) {
-  return cloth_problem(std::move(name), std::move(about), t_end,
-                       grid_points(side), grid_quads(side), K);
+  return {grid(std::move(name), t_end, side, K), std::move(about)};
 }
 
 Problem mixed_problem() {
-  Problem p = grid_problem(
-      "mixed", "25 x 25 cloth, a band of K = 1e6 N/m, held at a side, to 0.1 s",
-      0.1, 25);
-  p.constraint = held_at_a_side;
-  p.build = [build = p.build](Cloth& g) {
-    build(g);
-    for (Edge e : g.edges())
-      if (std::max(e.node1().position().x, e.node2().position().x) < 0.09)
-        e.value().K *= 1e4;
-  };
-  return p;
+  Model m = grid("mixed", 0.1);
+  m.pins = {{.y = 0}};
+  m.regions = {{.box = {Point(0, 0, 0), Point(0.09, 1, 0)}, .stiffness = 1e4}};
+  return {m, "25 x 25 cloth, a band of K = 1e6 N/m, held at a side, to 0.1 s"};
 }
 
 namespace {
@@ -161,28 +101,25 @@ namespace {
 /** Columns that become narrower from right to left, down to a sixteenth; masses
  * by area, K of a spring by 1/length. */
 Problem graded_problem() {
+  Model m = grid("graded", 0.25);
+  m.damping = 0;
+  Problem p(m, "25 x 25 cloth, columns of width 1 to 1/16, to 0.25 s");
   constexpr unsigned side = 25;
-  std::vector<Point> points = grid_points(side);
   const double ratio = std::pow(16, 1. / (side - 2));
-  const auto place = [=](double u) {  // of 0, 1/24 ... 1
-    return (std::pow(ratio, u * (side - 1)) - 1) /
-           (std::pow(ratio, side - 1) - 1);
-  };
-  for (Point& p : points) p.x = place(p.x);
-  Problem p = cloth_problem(
-      "graded", "25 x 25 cloth, columns of width 1 to 1/16, to 0.25 s", 0.25,
-      points, grid_quads(side));
-  p.gamma = 0;
-  p.build = [=, build = p.build](Cloth& g) {
-    build(g);
-    for (Node n : g.nodes()) n.value().mass = 0;
-    for (const Quad& q : grid_quads(side)) {
-      const double area =
-          norm(points[q[0]] - points[q[1]]) * norm(points[q[1]] - points[q[2]]);
-      for (unsigned i : q) g.node(i).value().mass += area / 4;
-    }
-    for (Edge e : g.edges()) e.value().K = 100. / 24 / e.value().L;
-  };
+  auto& x = p.mesh.points;
+  for (Point& q : x)  // q.x: 0, 1/24 ... 1
+    q.x = (std::pow(ratio, q.x * (side - 1)) - 1) /
+          (std::pow(ratio, side - 1) - 1);
+  p.mesh.masses.resize(x.size());
+  for (const Quad& q : p.mesh.quads) {
+    const double area = norm(x[q[0]] - x[q[1]]) * norm(x[q[1]] - x[q[2]]);
+    for (unsigned i : q) p.mesh.masses[i] += area / 4;
+  }
+  Cloth g;
+  p.build(g);
+  for (Edge e : g.edges())
+    p.mesh.springs.push_back(
+        {e.node1().index(), e.node2().index(), 100. / 24 / e.value().L});
   return p;
 }
 
@@ -202,56 +139,44 @@ void rub(Cloth& g, double) {
 }  // namespace
 
 std::vector<Problem> make_problems() {
-  std::vector<Problem> all;
-  all.push_back(chain_problem(
-      "chain", "20 masses between two walls, to 0.8 s; exact", 0.8));
-  all.push_back(
-      curtain_problem("curtain", "16 x 16 curtain let go, to 1 s; exact", 1));
-  all.push_back(grid_problem("grid0", "5 x 5 cloth with drag, to 5 s", 5, 5));
-  all.push_back(
-      grid_problem("grid1", "25 x 25 cloth with drag, to 0.5 s", 0.5, 25));
-  all.push_back(grid_problem("grid1-short",
-                             "25 x 25 cloth with drag, to 0.25 s", 0.25, 25));
-  all.push_back(grid_problem("stiff", "25 x 25 cloth, K = 10000 N/m, to 0.25 s",
-                             0.25, 25, 1e4));
-  all.push_back(mixed_problem());
-  all.push_back(graded_problem());
-  all.push_back(grid_problem(
-      "settles", "25 x 25 cloth, K = 1e5 N/m, drag of 4/s, at rest after 5 s",
-      5, 25, 1e5));
-  all.back().gamma = 4;
-  all.back().norm = Norm::functionals;
-  all.back().rests = true;
-  all.push_back(grid_problem(
-      "large", "100 x 100 cloth, a side of which is lifted, to 0.1 s", 0.1,
-      100));
-  all.back().driven = true;
+  std::vector<Problem> all = {
+      chain_problem("chain", "20 masses between two walls, to 0.8 s; exact",
+                    0.8),
+      curtain_problem("curtain", "16 x 16 curtain let go, to 1 s; exact", 1),
+      grid_problem("grid0", "5 x 5 cloth with drag, to 5 s", 5, 5),
+      {grid("grid1", 0.5), "25 x 25 cloth with drag, to 0.5 s"},
+      {grid("grid1-short", 0.25), "25 x 25 cloth with drag, to 0.25 s"},
+      {grid("stiff", 0.25, 25, 1e4), "25 x 25 cloth, K = 10000 N/m, to 0.25 s"},
+      mixed_problem(),
+      graded_problem()};
+  Model m = grid("settles", 5, 25, 1e5);
+  m.damping *= 4;
+  all.emplace_back(
+      m, "25 x 25 cloth, K = 1e5 N/m, drag of 4/s, at rest after 5 s");
+  all.back().norm = Norm::functionals, all.back().rests = true;
+  m = grid("large", 0.1, 100);
+  m.pins = {{.y = 0, .motion = {Point(0, 0, 1)}}};
+  all.emplace_back(m, "100 x 100 cloth, a side of which is lifted, to 0.1 s");
+  all.emplace_back(grid("drape", 0.4),
+                   "25 x 25 cloth falling on a ball, to 0.4 s");
   all.back().constraint = [](const Cloth& g) {
-    return make_combined_constraints(PinnedNodes(side_of(g), {Point(0, 0, 1)}));
+    return make_combined_constraints(PinConstraint(g), PlaneConstraint(),
+                                     SphereConstraint());
   };
-  all.push_back(grid_problem(
-      "drape", "25 x 25 cloth falling on a ball, to 0.4 s", 0.4, 25));
-  all.back().constraint = on_a_ball;
   all.back().norm = Norm::functionals;
-  all.push_back(grid_problem(
-      "slide", "25 x 25 cloth thrown on a floor, rubs and stops, to 0.5 s", 0.5,
-      25));
-  all.back().gamma = 0;
+  m = grid("slide", 0.5);
+  m.damping = 0, m.pins = {};
+  m.sheets[0].at.z = 0.05, m.sheets[0].velocity.x = 1;
+  all.emplace_back(m,
+                   "25 x 25 cloth thrown on a floor, rubs and stops, to 0.5 s");
+  all.back().norm = Norm::functionals;
   all.back().constraint = [](const Cloth&) {
     return make_combined_constraints(rub);
   };
-  all.back().build = [build = all.back().build](Cloth& g) {
-    build(g);
-    for (Node n : g.nodes()) {
-      n.position().z = 0.05;
-      n.value().vel = Point(1, 0, 0);
-    }
-  };
-  all.back().norm = Norm::functionals;
-  all.push_back(grid_problem(
-      "tear", "25 x 25, drag, pins, floor and tearing ball (7.2), to 0.4 s",
-      0.4, 25));
-  all.back().constraint = torn_by_a_ball;
+  m = grid("tear", 0.4);
+  m.planes = {{}}, m.tears = {{}};
+  all.emplace_back(
+      m, "25 x 25, drag, pins, floor and tearing ball (7.2), to 0.4 s");
   all.back().norm = Norm::functionals;
   return all;
 }

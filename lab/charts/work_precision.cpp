@@ -248,7 +248,7 @@ void grid_refinement(const Options& o, std::ostream& out, Progress& progress) {
  * limit for those without one; at a tolerance of 1e-4 m for the adaptive. */
 void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
   Problem p = grid_problem("grid0", "5 x 5 cloth without drag", 5, 5);
-  p.gamma = 0;
+  p.damping = 0;
   write_head(out, "total energy against time");
   out << "# scene: " << p.about
       << "; explicit methods at equal cost, omega dt = half the force "

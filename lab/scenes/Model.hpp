@@ -98,7 +98,7 @@ struct Region {
 /** Holds or moves the nodes whose initial positions have the given coordinates
  * [m], or one node by its index; at least one of these is given. */
 struct Pin {
-  std::optional<double> x, y, z, node;
+  std::optional<double> x = {}, y = {}, z = {}, node = {};
   Motion motion = {};
   static constexpr double near = 1e-9;  ///< [m]
   /** How far the start @a p of node @a i is from what it holds: the largest

@@ -33,10 +33,10 @@ struct Spring {
 
 /** Nodes, and what joins them. */
 struct Net {
-  std::vector<Point> points;  ///< of the nodes [m]
+  std::vector<Point> points = {};  ///< of the nodes [m]
   /** The faces: quads, and triangles by face_around(). Their springs are those
    * that the scene names: sides, diagonals, bend. */
-  std::vector<Quad> quads;
+  std::vector<Quad> quads = {};
   /** Velocities of the nodes at t = 0 [m/s]; empty: at rest. */
   std::vector<Point> velocities = {};
   /** More springs. One in the place of a face's spring replaces it; several

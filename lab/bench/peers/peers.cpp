@@ -207,7 +207,7 @@ Runner ours(const MethodEntry& entry) {
   return [&entry](double parameter) {
     const Problem& p = equation->problem;
     Start s(p);
-    const ConstraintPlan pins = p.constraint(s.cloth);
+    const ConstraintPlan pins = p.constraints(s.cloth);
     auto method = entry.make();
     method->set_tolerance(parameter);
     const double dt = entry.info.adaptive ? p.t_end : parameter;
@@ -297,7 +297,7 @@ int main() {
   std::cout << "problem,method,parameter,sweeps,seconds_min,seconds_median,"
                "error,floor\n";
   Problem grid1 = grid_problem("grid1", "25 x 25 cloth, to 0.25 s", 0.25, 25);
-  grid1.gamma = 0;  // the methods for x'' = F(x) need that
+  grid1.damping = 0;  // the methods for x'' = F(x) need that
   for (const Problem& p :
        {grid1, curtain_problem("curtain", "16 x 16 curtain, to 1 s", 1)}) {
     Equation one(p);
