@@ -16,16 +16,17 @@ import re
 import sys
 
 page = "lab/methods/README.md"
-blocks = re.findall("^```cpp\n(.*?)\n```$", open(page).read(), re.M | re.S)
+text = open(page).read()
+blocks = re.findall("^```cpp\n(.*?)\n```$", text, re.M | re.S)
 quoted = [piece for block in blocks for piece in block.split("\n\n")]
 steps = open("methods.hpp").read()
 code = steps + open("mass_spring.hpp").read()
 for piece in quoted:
     if piece + "\n" not in code:
         sys.exit(f"{page} does not quote as it is:\n{piece}")
-for step in re.findall(r"^double \w+_step\(", steps, re.M):
-    if not any(step in piece for piece in quoted):
-        sys.exit(f"{page} does not quote {step[7:]}) of methods.hpp")
+for step in re.findall(r"^double (\w+_step)\(", steps, re.M):
+    if f"double {step}(" not in "".join(quoted) and f"`{step}`" not in text:
+        sys.exit(f"{page} neither quotes nor names {step}() of methods.hpp")
 END
 
 results=lab/bench/results/amd-epyc-26-avx512
