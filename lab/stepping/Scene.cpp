@@ -10,69 +10,76 @@
 
 namespace lab {
 
+SceneParts::SceneParts(const Model& m, Net mesh)
+    : model_(m), mesh_{std::move(mesh), {}} {
+  build();
+}
+SceneParts::SceneParts(const SceneParts& other)
+    : model_(other.model_),
+      mesh_(other.mesh_),
+      built_(other.built_),
+      held_(other.held_) {
+  hold();
+}
+
 Scene::Scene(const Model& m) : Scene(m, mesh_of(m)) {}
 Scene::Scene(const Model& m, Net mesh)
     : Scene(m, std::move(mesh), m.step, *m.method) {}
 Scene::Scene(const Model& m, Net mesh, const TimeStep& step,
              const MethodEntry& method)
-    : model_(m), mesh_{std::move(mesh), {}}, stepper_(build(), step, method) {}
+    : SceneParts(m, std::move(mesh)), Stepper(built_, step, method) {}
 
 Scene::Scene(const Scene& other, const TimeStep& step,
              const MethodEntry& method)
-    : model_(other.model_),
-      mesh_(other.mesh_),
-      system_(other.system_),
-      held_(other.held_),
-      changed_(true),
-      stepper_(hold(), step, method, other.time()) {
-  if (other.stepper_.follows_drag()) follow_drag();
+    : SceneParts(other),
+      Stepper(built_, step, method, other.time()),
+      changed_(true) {
+  if (other.follows_drag()) follow_drag();
 }
 
 /** Build the system as it starts. */
-System& Scene::build() {
-  Cloth& g = system_.cloth;
+void SceneParts::build() {
+  Cloth& g = built_.cloth;
   g.clear();
   build_model(g, model_, mesh_.mesh);
   mesh_.ids.clear();
   for (Node n : g.nodes()) mesh_.ids.push_back(n.id());
   take_forces(force_of(model_, mesh_.mesh, g));
-  system_.hand.reset();
+  built_.hand.reset();
   held_ = held_of(model_, mesh_.mesh, g);
-  system_.watched.emplace(constraint_of(model_, mesh_.mesh, g));
-  system_.overlaps = false;
+  built_.watched.emplace(constraint_of(model_, mesh_.mesh, g));
+  built_.overlaps = false;
   for (Node n : g.nodes())
-    system_.overlaps |= model_.starts_inside(n.position());
-  return system_;
+    built_.overlaps |= model_.starts_inside(n.position());
 }
 
-void Scene::take_forces(CombinedForces acting) {
-  system_.acting = std::move(acting), system_.gravity = model_.gravity;
-  system_.wind = model_.wind ? model_.wind->velocity : Point();
+void SceneParts::take_forces(CombinedForces acting) {
+  built_.acting = std::move(acting), built_.gravity = model_.gravity;
+  built_.wind = model_.wind ? model_.wind->velocity : Point();
 }
 
 /** Make the constraint anew, with the pins held_. */
-System& Scene::hold() {
-  system_.overlaps = false;
-  system_.watched.emplace(constraint_of(model_, system_.cloth, held_));
-  return system_;
+void SceneParts::hold() {
+  built_.overlaps = false;
+  built_.watched.emplace(constraint_of(model_, built_.cloth, held_));
 }
 
 void Scene::restart() {
   changed_ = false, diagnosis_.reset();
   build();
-  stepper_.restart();
+  Stepper::restart();
 }
 
 // ------------------------------------------------------------------- Changes
 
 template <typename Change>
 void Scene::edit(Change change) {
-  stepper_.edit(change);
+  Stepper::edit(change);
   changed_ = true, diagnosis_.reset();
 }
 
 void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
-  stepper_.change_method(method, step);
+  Stepper::change_method(method, step);
   changed_ = true, diagnosis_.reset();
 }
 
@@ -85,8 +92,8 @@ void Scene::change_forces(const Model& m) {
     take_forces(std::move(acting));
     for (Edge e : cloth().edges())
       e.value().K = arrays(fresh).edge_values()[e.id()].K;
-    stepper_.forget_limits();
-    stepper_.make_method();
+    forget_limits();
+    make_method();
   });
 }
 
@@ -124,7 +131,7 @@ bool Scene::unpin(unsigned node) {
                     [node](const auto& held) { return held.id == node; });
     std::erase_if(held_, [](const HeldNodes& h) { return h.nodes.empty(); });
     hold();
-    stepper_.forget_limits();
+    forget_limits();
   });
   return true;
 }
@@ -152,7 +159,7 @@ bool Scene::grab(unsigned node, const Point& target) {
 }
 
 void Scene::move_hand(const Point& target) {
-  HandForce hand = *system_.hand;
+  HandForce hand = *built_.hand;
   hand.move(target);
   pull(hand);
 }
@@ -161,7 +168,7 @@ void Scene::release() { pull(std::nullopt); }
 
 /** Continue with @a hand, or with none. */
 void Scene::pull(std::optional<HandForce> hand) {
-  stepper_.set_hand(std::move(hand));
+  set_hand(std::move(hand));
   changed_ = true;
 }
 
@@ -200,7 +207,7 @@ std::string Scene::remedy() const {
 std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
   const TimeStep step = {
       .dt = cure.dt,
-      .tolerance = cure.method.info.adaptive ? stepper_.step_tolerance() : 0};
+      .tolerance = cure.method.info.adaptive ? step_tolerance() : 0};
   return changed_
              ? std::make_unique<Scene>(*this, step, cure.method)
              : std::make_unique<Scene>(model_, mesh_.mesh, step, cure.method);
@@ -209,9 +216,9 @@ std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
   const auto copy = [this] {
     auto scene = std::make_unique<Scene>(
-        *this, TimeStep{.dt = dt(), .tolerance = stepper_.step_tolerance()},
-        stepper_.method_entry());
-    scene->stepper_.set_failure(failure());
+        *this, TimeStep{.dt = dt(), .tolerance = step_tolerance()},
+        method_entry());
+    scene->set_failure(failure());
     return scene;
   };
   auto ahead = copy();
@@ -223,10 +230,9 @@ std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
         return true;
     return false;
   };
-  for (int left = 1000; left > 0 && !is_far() && ahead->stepper_.advance();
-       --left)
+  for (int left = 1000; left > 0 && !is_far() && ahead->advance(); --left)
     if (interrupted()) break;
-  return ahead->stepper_.is_finite() ? std::move(ahead) : copy();
+  return ahead->is_finite() ? std::move(ahead) : copy();
 }
 
 }  // namespace lab

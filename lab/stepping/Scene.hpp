@@ -20,8 +20,23 @@ inline double evaluations_of(const MethodInfo& m) {
   return m.sweeps * (m.limit == no_limit ? 100 : 1);
 }
 
+/** The cloth of a model, and what acts on it: what a Scene steps. */
+class SceneParts {
+ protected:
+  Model model_;
+  BuiltMesh mesh_;
+  System built_;
+  std::vector<HeldNodes> held_;
+
+  SceneParts(const Model& m, Net mesh);
+  SceneParts(const SceneParts& other);
+  void build();
+  void take_forces(CombinedForces acting);
+  void hold();
+};
+
 /** A scene, ready to run. */
-class Scene {
+class Scene : private SceneParts, private Stepper {
  public:
   /** The scene of @a m at t = 0. If nodes lie inside obstacles, all constraints
    * act once: their work is in flow().
@@ -49,52 +64,23 @@ class Scene {
   const Model& model() const { return model_; }
   const BuiltMesh& mesh() const { return mesh_; }
   /** The forces of the model, without the hand. */
-  const CombinedForces& force() const { return system_.acting; }
+  const CombinedForces& force() const { return built_.acting; }
   /** The cloth; between two steps it may be changed in any way. */
-  Cloth& cloth() { return system_.cloth; }
-  const Cloth& cloth() const { return system_.cloth; }
+  Cloth& cloth() { return built_.cloth; }
+  const Cloth& cloth() const { return built_.cloth; }
   /** Counts the nodes that it stopped from tunnelling through obstacles. */
-  const WatchedConstraint& watched() const { return *system_.watched; }
+  const WatchedConstraint& watched() const { return *built_.watched; }
   /** A warning about the first of them, right after its step; else "". */
   std::string missed_text() const;
 
-  // As in Stepper.hpp:
-  static constexpr int guard_interval = Stepper::guard_interval;
-  const Stepper& stepper() const { return stepper_; }
-  bool step(double t_end = no_limit) { return stepper_.step(t_end); }
-  bool steps_at_once(int most, double t_end = no_limit) {
-    return stepper_.steps_at_once(most, t_end);
-  }
-  bool run_to(double t_end, const std::function<void()>& after = {}) {
-    return stepper_.run_to(t_end, after);
-  }
-  bool done(double t_end) const { return stepper_.done(t_end); }
-  bool check() { return stepper_.check(); }
-  bool settle() { return stepper_.settle(); }
-  const MethodInfo& method() const { return stepper_.method(); }
-  double dt() const { return stepper_.dt(); }
-  long long steps() const { return stepper_.steps(); }
-  double time() const { return stepper_.time(); }
-  long long settled_steps() const { return stepper_.settled_steps(); }
-  const std::optional<StepControl>& control() const {
-    return stepper_.control();
-  }
-  Energies energy() const { return stepper_.energy(); }
-  const EnergyFlow& flow() const { return stepper_.flow(); }
-  void follow_drag() { stepper_.follow_drag(); }
-  double drift(const Energies& now) const { return stepper_.drift(now); }
-  double lost() const { return stepper_.lost(); }
-  void watch_energy(double t_end) { stepper_.watch_energy(t_end); }
-  const std::optional<EnergyWatch>& energy_watch() const {
-    return stepper_.energy_watch();
-  }
-  long long evaluations() const { return stepper_.evaluations(); }
-  const std::optional<Failure>& failure() const { return stepper_.failure(); }
-  double safe_limit(const MethodEntry& m) const {
-    return stepper_.safe_limit(m);
-  }
-  double safe_limit() const { return stepper_.safe_limit(); }
-  void archive(Archive& a) { stepper_.archive(a); }
+  const Stepper& stepper() const { return *this; }
+  using Stepper::archive, Stepper::check, Stepper::control, Stepper::done,
+      Stepper::drift, Stepper::dt, Stepper::energy, Stepper::energy_watch,
+      Stepper::evaluations, Stepper::failure, Stepper::flow,
+      Stepper::follow_drag, Stepper::guard_interval, Stepper::lost,
+      Stepper::method, Stepper::run_to, Stepper::safe_limit, Stepper::settle,
+      Stepper::settled_steps, Stepper::step, Stepper::steps,
+      Stepper::steps_at_once, Stepper::time, Stepper::watch_energy;
 
   // Changes between two steps: of the present state or, after a failure, of the
   // last good one. The energy that a change adds counts as work in flow(). All
@@ -125,7 +111,7 @@ class Scene {
   void move_hand(const Point& target);
   void release();
   /** nullopt if there is no hand. Its node may have been removed. */
-  const std::optional<HandForce>& hand() const { return system_.hand; }
+  const std::optional<HandForce>& hand() const { return built_.hand; }
 
   // After a failure:
 
@@ -159,17 +145,9 @@ class Scene {
   std::unique_ptr<Scene> beyond_failure(double distance) const;
 
  private:
-  Model model_;
-  BuiltMesh mesh_;
-  System system_;
-  std::vector<HeldNodes> held_;
   bool changed_ = false;                        // since the start
   mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
-  Stepper stepper_;
 
-  System& build();
-  void take_forces(CombinedForces acting);
-  System& hold();
   template <typename Change>
   void edit(Change change);
   void pull(std::optional<HandForce> hand);

@@ -97,7 +97,7 @@ std::optional<Attempt> Scene::half_step(double work) const {
   if (changed_ ||
       2 * double(steps()) * evaluations_of(method()) * springs > work)
     return std::nullopt;
-  const auto finer = anew({stepper_.method_entry(), dt() / 2});
+  const auto finer = anew({method_entry(), dt() / 2});
   // With order 1, that is half of the error.
   const double most = energy_tolerance / 4 * energy_watch()->largest() +
                       energy_watch()->slack();
@@ -109,9 +109,8 @@ std::optional<Attempt> Scene::half_step(double work) const {
 const Diagnosis& Scene::diagnosis() const {
   if (diagnosis_) return *diagnosis_;
   const FailedRun run = failed_run(*this);
-  const double t_end = stepper_.t_end();
-  const bool ends = std::isfinite(t_end);  // else somebody waits for the cure
-  const double end = ends ? t_end : std::max(5., 2 * run.time);
+  const bool ends = std::isfinite(t_end());  // else somebody waits for the cure
+  const double end = ends ? t_end() : std::max(5., 2 * run.time);
   return diagnosis_.emplace(diagnose(run, [&](const Cure& cure) {
     return attempt(*this, cure, end, ends ? trial_work : trial_work / 16);
   }));
