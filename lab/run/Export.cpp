@@ -16,6 +16,7 @@
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Faces.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/scenes/Measure.hpp"
 #include "lab/stepping/Scene.hpp"
 
 namespace lab {
@@ -44,17 +45,12 @@ Frame frame_of(const Scene& scene, const Frame* before) {
     f.velocities[i] = node.value().vel;
     f.forces[i] = scene.force()(node, f.time);
     f.masses[i] = node.value().mass;
+    f.strains[i] = strain_at(node);
   }
-  std::vector<unsigned> degree(n);
   for (Edge e : g.edges()) {
-    const double L = e.value().L;
-    const double strain = L > 0 ? e.length() / L - 1 : 0;
     f.springs.push_back({point_of[e.node1().id()], point_of[e.node2().id()]});
-    f.spring_strains.push_back(strain);
-    for (unsigned i : f.springs.back()) f.strains[i] += strain, ++degree[i];
+    f.spring_strains.push_back(strain_of(e));
   }
-  for (unsigned i = 0; i < n; ++i)
-    if (degree[i] > 0) f.strains[i] /= degree[i];
   f.quads = quads_left(g, built);
   return f;
 }

@@ -152,9 +152,7 @@ Answer components(const Point& p, const Measure& what) {
 
 Answer stretch(const Measured& now, const Measure&) {
   double most = 0;
-  for (Edge e : now.cloth.edges())
-    if (e.value().L > 0)
-      most = std::max(most, double(e.length() / e.value().L) - 1);
+  for (Edge e : now.cloth.edges()) most = std::max(most, strain_of(e));
   return {most};
 }
 
@@ -304,6 +302,16 @@ std::string columns_of(const Measure& m) {
 
 const char* unit_of(const Measure& m) {
   return m.is_time() ? "s" : quantities[m.quantity].unit;
+}
+
+double strain_of(Edge e) {
+  const double L = e.value().L;
+  return L > 0 ? e.length() / L - 1 : 0;
+}
+double strain_at(Node n) {
+  double sum = 0;
+  for (Edge e : n.edges()) sum += strain_of(e);
+  return n.degree() > 0 ? sum / n.degree() : 0;
 }
 
 Answer answer(const Model& m, const Cloth& g, const Measure& what) {

@@ -57,6 +57,11 @@ std::string columns_of(const Measure& m);
  * @pre no node was removed, for positions: see check_question() */
 Answer answer(const Model& m, const Cloth& g, const Measure& what);
 
+/** The strain l/L - 1 of a spring; 0 without a rest length. */
+double strain_of(Edge e);
+/** The mean of those at @a n: above 0 if it is taut; 0 without springs. */
+double strain_at(Node n);
+
 /** False for places on a cloth that may tear, and for what @a m does not have:
  * a tear, an obstacle, that sheet. */
 bool can_answer(const Model& m, const Measure& what);

@@ -18,20 +18,12 @@
 #include "CME212/SDLViewer.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/stepping/Scene.hpp"
 
 namespace lab {
 namespace {
-
-/** The mean l/L - 1 of the springs at @a n: more than 0 if it is taut, less if
- * it is slack; 0 without springs. */
-double strain_at(const Node& n) {
-  double strain = 0;
-  for (Edge e : n.edges())
-    if (double L = e.value().L; L > 0) strain += e.length() / L - 1;
-  return n.degree() > 0 ? strain / n.degree() : 0;
-}
 
 class SDLScreen : public Screen {
  public:
