@@ -13,7 +13,6 @@
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/Xpbd.hpp"
 #include "lab/stepping/Scene.hpp"
-#include "tests/NetOf.hpp"
 #include "tests/Says.hpp"
 
 using namespace lab;
@@ -420,10 +419,6 @@ TEST(End, OfAFreeFallIsExact) {
 // The order that a method declares, through last steps that are shorter.
 TEST(End, KeepsTheOrderThroughShorterSteps) {
   const Problem p = chain_problem("", "", 1);
-  const Start start(p);
-  const Net chain = net_of(start.cloth, start.constraint);
-  Model m;
-  m.gravity = 0;
   for (const MethodEntry& method : methods) {
     if (method.info.order > 4 || method.info.adaptive) continue;
     if (method.info.limit == 0 || method.info.name == "xpbd") continue;
@@ -433,7 +428,7 @@ TEST(End, KeepsTheOrderThroughShorterSteps) {
     for (double rest : {0.3, 0.9}) {
       double error[2];
       for (int k : {0, 1}) {
-        Scene s(m, chain, {.dt = 1 / ((1 + k) * n + rest)}, method);
+        Scene s(p, p.mesh, {.dt = 1 / ((1 + k) * n + rest)}, method);
         ASSERT_TRUE(s.run_to(1));
         const auto right = p.exact(1);
         error[k] = 0;
