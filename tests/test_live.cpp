@@ -153,7 +153,7 @@ TEST(Live, AMethodThatCannotChooseItsStepTakesThePresentOne) {
   const double dt = live.scene().dt();
   live.apply("method implicit-euler");
   EXPECT_EQ(live.scene().dt(), dt);
-  EXPECT_TRUE(live.model().step.fixed());
+  EXPECT_TRUE(live.scene().stepper().time_step().fixed());
   run(live, 3);
 }
 

@@ -107,14 +107,14 @@ void Live::Side::mark() {
 
 void Live::set_step(const MethodEntry& method, const TimeStep& step) {
   main_->scene->change_method(method, step);
-  main_->method = method, model_.step = step;
+  main_->method = method;
   main_->mark();
   tune();
 }
 
 /** The step stays the same. */
 void Live::set_method(const MethodEntry& method) {
-  TimeStep step = model_.step;
+  TimeStep step = scene().stepper().time_step();
   if (step.fixed()) step.dt = main_->scene->dt();
   try {
     set_step(method, step);
@@ -122,12 +122,11 @@ void Live::set_method(const MethodEntry& method) {
     step.dt = main_->scene->dt(), step.rule = StepRule::fixed;
     set_step(method, step);
   }
-  model_.method = find_method(method.info.name);
 }
 
-/** Use the forces of the model as it is now. */
-void Live::change_forces() {
-  for (Side* side : sides()) side->scene->change_forces(model_), side->mark();
+/** Use the forces of @a m. */
+void Live::change_forces(const Model& m) {
+  for (Side* side : sides()) side->scene->change_forces(m), side->mark();
   tune();
 }
 
@@ -147,9 +146,8 @@ void Live::compare(const std::vector<Lane>& rivals) {
   if (!main_->runs()) return;
   rivals_.clear(), reference_.reset(), round_ = 1;
   if (rivals.empty()) return;
-  if (!model_.step.fixed())
-    set_step(main_->method,
-             {.dt = main_->scene->dt(), .tolerance = model_.step.tolerance});
+  if (const TimeStep& now = scene().stepper().time_step(); !now.fixed())
+    set_step(main_->method, {.dt = scene().dt(), .tolerance = now.tolerance});
   for (const Lane& r : rivals) {
     rivals_.push_back(copy(*r.method));
     rivals_.back().asked = r.share * rivals_.back().dt_unit;
@@ -221,21 +219,19 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines) {
   return all;
 }
 
-Live::Live(Model m) : Live(m, mesh_of(m)) {}
-Live::Live(Model m, Net mesh)
-    : model_(std::move(m)), changes_(read_changes(model_.at)) {
-  main_.emplace(std::make_unique<Scene>(model_, std::move(mesh)),
-                *model_.method);
-  main_->scene->watch_energy(model_.t_end);
+Live::Live(const Model& m) : Live(m, mesh_of(m)) {}
+Live::Live(const Model& m, Net mesh) : changes_(read_changes(m.at)) {
+  main_.emplace(std::make_unique<Scene>(m, std::move(mesh)), *m.method);
+  main_->scene->watch_energy(m.t_end);
   start_nodes_ = scene().cloth().num_nodes();
   start_edges_ = scene().cloth().num_edges();
 }
 
 void Live::restart(const Model& m) {
   rivals_.clear(), reference_.reset(), round_ = 1;
-  model_ = m, next_ = 0, calls_ = 0, recording_.clear();
+  next_ = 0, calls_ = 0, recording_.clear();
   main_->scene->restart();
-  change_forces();
+  change_forces(m);
   set_step(*m.method, m.step);
 }
 
@@ -249,7 +245,7 @@ bool Live::step() {
   if (done()) return false;
   ++calls_;
   for (int k = 0; k < round_ && !done() && !interrupted(); ++k)
-    main_->scene->step(model_.t_end);
+    main_->scene->step(model().t_end);
   const double time = main_->scene->time();
   for (Side* side : sides()) {
     if (side == &*main_ || !side->runs()) continue;

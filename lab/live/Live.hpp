@@ -113,9 +113,9 @@ class Live {
  public:
   /** At t = 0. The changes of Model::at are made by the first step() from
    * their times on.  Throws as Scene(model), and as read_changes() */
-  explicit Live(Model m);
+  explicit Live(const Model& m);
   /** The same from @a mesh, as of a Scene. */
-  Live(Model m, Net mesh);
+  Live(const Model& m, Net mesh);
 
   /** Back to t = 0, with the parameters of @a m and all changes to come.
    * @pre it was made from @a m */
@@ -146,14 +146,14 @@ class Live {
   /** Scene::check() of all that runs, needed before it is shown. */
   bool check();
   /** It failed, or is at the end of its model. */
-  bool done() const { return scene().done(model_.t_end); }
+  bool done() const { return scene().done(model().t_end); }
   /** The number of step() calls so far that found it not done(). */
   long long calls() const { return calls_; }
   /** The number of changes that are still to be made. */
   std::size_t changes_left() const { return changes_.size() - next_; }
 
-  /** The model with all changes by requests: what sliders show. */
-  const Model& model() const { return model_; }
+  /** The model with all changes of forces: what sliders show. */
+  const Model& model() const { return scene().model(); }
   const Scene& scene() const { return *main_->scene; }
   /** To be changed by requests alone. The same object until the destructor. */
   Scene& scene() { return *main_->scene; }
@@ -197,7 +197,6 @@ class Live {
     RunReadings readings(bool sharp);
   };
 
-  Model model_;
   std::optional<Side> main_, reference_;
   std::vector<Side> rivals_;
   int round_ = 1;  // steps of the main scene in one
@@ -228,7 +227,7 @@ class Live {
   }
   void set_step(const MethodEntry& method, const TimeStep& step);
   void set_method(const MethodEntry& method);
-  void change_forces();
+  void change_forces(const Model& m);
   void compare(const std::vector<Lane>& rivals);
   std::vector<Lane> at_equal_work(
       const std::vector<const MethodEntry*>& methods) const;

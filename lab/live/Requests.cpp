@@ -120,7 +120,9 @@ struct Live::Table {
           in.fail("acts along z: expected 0 0 and a number");
       }
       in.end();
-      if (live) parameter(live->model_) = a, live->change_forces();
+      if (!live) return;
+      Model m = live->model();
+      parameter(m) = a, live->change_forces(m);
     };
     all.push_back({name, override, run, parameter});
   }
@@ -132,7 +134,7 @@ Live::Table::Table() {
      [](Live& live, const MethodEntry* m) { live.set_method(*m); });
   // From now on by steps of this share of RunReadings::dt_unit.
   on("step", override, [](Live& live, Share share) {
-    TimeStep step = live.model_.step;
+    TimeStep step = live.scene().stepper().time_step();
     step.dt = share.of_unit * live.main_->dt_unit;
     step.rule = StepRule::fixed;
     live.set_step(live.main_->method, step);

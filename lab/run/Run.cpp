@@ -131,7 +131,7 @@ void Run::announce() {
     std::cout << line << '\n';
   const std::string_view method = scene_.method().name;
   const double dt = scene_.dt(), limit = scene_.safe_limit();
-  const bool sharp = scene_.stepper().step_rule() == StepRule::sharp;
+  const bool sharp = scene_.stepper().time_step().rule == StepRule::sharp;
   std::ostringstream out;
   out.precision(3);
   out << "dt = " << dt << " s";

@@ -207,7 +207,7 @@ std::string Scene::remedy() const {
 std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
   const TimeStep step = {
       .dt = cure.dt,
-      .tolerance = cure.method.info.adaptive ? step_tolerance() : 0};
+      .tolerance = cure.method.info.adaptive ? time_step().tolerance : 0};
   return changed_
              ? std::make_unique<Scene>(*this, step, cure.method)
              : std::make_unique<Scene>(model_, mesh_.mesh, step, cure.method);
@@ -216,7 +216,7 @@ std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
   const auto copy = [this] {
     auto scene = std::make_unique<Scene>(
-        *this, TimeStep{.dt = dt(), .tolerance = step_tolerance()},
+        *this, TimeStep{.dt = dt(), .tolerance = time_step().tolerance},
         method_entry());
     scene->set_failure(failure());
     return scene;

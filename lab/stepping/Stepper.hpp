@@ -106,9 +106,8 @@ class Stepper {
 
   const MethodInfo& method() const { return entry_.info; }
   const MethodEntry& method_entry() const { return entry_; }
-  StepRule step_rule() const { return step_.rule; }
-  /** TimeStep::tolerance, of the inner steps of an adaptive method [m]. */
-  double step_tolerance() const { return step_.tolerance; }
+  /** As asked for: of steps that are chosen its dt is not dt(). */
+  const TimeStep& time_step() const { return step_; }
   /** The next step [s], unless t_end() shortens it. */
   double dt() const { return clock_.dt; }
   /** Steps done, and the time [s] reached. */
