@@ -120,9 +120,9 @@ class Camcorder {
     const canvas = this.canvas = document.createElement('canvas');
     const kind = ['video/mp4', 'video/webm'].find(
       kind => self.MediaRecorder?.isTypeSupported(kind));
-    if (!kind || !canvas.captureStream)
-      return page.say('.says', 'This browser cannot record a film. Picture ' +
-        'works, and so does the recorder of your screen.');
+    const not = () => page.say('.says', 'This browser cannot record a film. ' +
+      'Picture works, and so does the recorder of your screen.');
+    if (!kind || !canvas.captureStream) return not();
     const parts = [];
     this.copy(canvas);
     this.recorder = new MediaRecorder(canvas.captureStream(30),
@@ -132,7 +132,8 @@ class Camcorder {
     this.recorder.onstop = () => {
       clearTimeout(end), this.recorder = null;
       setText($('film'), 'Film');
-      save(new Blob(parts, {type: kind}), kind.slice(6));
+      const film = new Blob(parts, {type: kind});
+      film.size ? save(film, kind.slice(6)) : not();  // without an encoder
     };
     this.recorder.start(), setText($('film'), 'Stop film'), page.changed();
   }
