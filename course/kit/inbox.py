@@ -7,14 +7,15 @@ Moodle names a submission NAME_NUMBER_assignsubmission_file..., Canvas
 nameNUMBER_NUMBER_FILE-ATTEMPT.zip: DIR gets a folder NAME_NUMBER for each
 student, with the files of the last attempt; `make class DIR=DIR OUT=GRADES`
 grades it. SHEET is the CSV file that the platform gives; COLUMN of it gets the
-points of the student whose NUMBER stands in the row. Exit status: 0 done, 2 bad
-input, and then nothing was written."""
+points of the student whose NUMBER ends the cell in its column ID, else in its
+first. Exit status: 0 done, 2 bad input, and then nothing was written."""
 import csv
 import io
 import pathlib
 import re
 import sys
 import zipfile
+import zlib
 
 LARGEST = 10_000_000    # bytes of a submission
 MOODLE = re.compile(r"(?P<name>[^/]+_\d+)_assignsubmission_[a-z]+[_/]*"
@@ -36,7 +37,7 @@ def files_in(name: str, content: bytes) -> Files:
     with zipfile.ZipFile(io.BytesIO(content)) as packed:
         members = [m for m in packed.infolist() if m.filename.endswith(TAKEN)]
         if sum(m.file_size for m in members) > LARGEST:
-            raise InboxError(f"{name} unpacks to more than {LARGEST} bytes")
+            raise InboxError(f"it unpacks to more than {LARGEST} bytes")
         return {m.filename: packed.read(m) for m in members}
 
 
@@ -44,9 +45,7 @@ def read(path: str) -> dict[str, Files]:
     """{student: files}, those of a later attempt in place of earlier ones."""
     found: dict[str, dict[tuple[str, int], Files]] = {}
     with zipfile.ZipFile(path) as packed:
-        for member in packed.infolist():
-            if member.is_dir() or member.file_size > LARGEST:
-                continue
+        for member in (m for m in packed.infolist() if not m.is_dir()):
             if it := MOODLE.fullmatch(member.filename):
                 student, file, attempt = it["name"], it["file"], 0
             elif it := CANVAS.fullmatch(member.filename):
@@ -55,8 +54,14 @@ def read(path: str) -> dict[str, Files]:
             else:
                 raise InboxError(f"{path}: '{member.filename}' is named "
                                  "neither as by Moodle nor as by Canvas")
-            found.setdefault(student, {})[file, attempt] = files_in(
-                file, packed.read(member))
+            taken = found.setdefault(student, {})
+            try:
+                if member.file_size > LARGEST:
+                    raise InboxError(f"it has more than {LARGEST} bytes")
+                taken[file, attempt] = files_in(file, packed.read(member))
+            except (InboxError, zipfile.BadZipFile, zlib.error,
+                    RuntimeError) as error:     # as of one with a password
+                print(f"{member.filename}: nothing is taken from it: {error}")
     return {student: {name: content for _, files in sorted(
         all_of.items(), key=lambda one: one[0][1]) for name, content
         in files.items()} for student, all_of in found.items()}
@@ -85,10 +90,10 @@ def marks(grades: str, sheet: str, column: str) -> None:
         raise InboxError(f"{sheet}: no column '{column}', expected one of: "
                          + ", ".join(rows[0]))
     at = rows[0].index(column)
-    for row in rows[1:]:
-        for number in [n for cell in row[:4] for n in re.findall(r"\d+", cell)]:
-            if number in points:
-                row[at] = points[number]
+    named = rows[0].index("ID") if "ID" in rows[0] else 0
+    for row in filter(None, rows[1:]):
+        if (number := re.findall(r"\d*$", row[named])[0]) in points:
+            row[at] = points[number]
     csv.writer(sys.stdout, lineterminator="\n").writerows(rows)
 
 

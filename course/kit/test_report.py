@@ -66,20 +66,22 @@ class Inbox(unittest.TestCase):
         self.assertEqual(self.unpacked({
             "leeann_101_9001_hw2.zip": one,
             "leeann_LATE_101_9003_hw2-2.zip": three,
-            "leeann_101_9002_hw2-1.zip": two}), {"leeann_101/Graph.hpp": "3"})
+            "leeann_101_9002_hw2-1.zip": two,
+            "bo_102_9004_hw2.zip": "", "cy_103_9_a.hpp": "c" * 11_000_000}),
+            {"leeann_101/Graph.hpp": "3"})
         self.assertIn("named neither as by Moodle", self.unpacked({"x": ""}))
 
     def test_points_go_into_the_sheet(self):
         (self.folder / "class.csv").write_text(
-            "student,points\nAnn Lee_101,88\nleebo_102,7\n")
+            "student,points\nAnn Lee_101,88\nleebo_7,7\n")
         sheet = self.folder / "sheet.csv"
-        sheet.write_text("Identifier,Name,Grade\nParticipant 101,A,\n"
-                         "Participant 103,C,5\n")
+        sheet.write_text("Identifier,Name,Grade\nParticipant 101,A 7,\n"
+                         "Participant 103,C 7,5\n\n")
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             inbox.marks(str(self.folder), str(sheet), "Grade")
         self.assertEqual(said.getvalue(), "Identifier,Name,Grade\n"
-                         "Participant 101,A,88\nParticipant 103,C,5\n")
+                         "Participant 101,A 7,88\nParticipant 103,C 7,5\n\n")
         with self.assertRaisesRegex(inbox.InboxError, "no column 'Points'"):
             inbox.marks(str(self.folder), str(sheet), "Points")
 
