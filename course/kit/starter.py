@@ -40,6 +40,9 @@ TESTS = "course/tests"
 # Left out at the level open.
 GUIDED = ("CME212/SlotMap.hpp", "docs/graph.md")
 WORKFLOW = "course/starter/tests.yml"
+# In code: a comment, unless it has the numbers already, and text of a figure.
+SAID = re.compile(r"^ *(?:// |/?\*|#)(?!.*(?:YOUR CODE|TASK\(|@file)).*"
+                  r"|'[^'\n]*'", re.MULTILINE)
 Files = dict[str, tuple[bytes, bool]]   # path: content, is it a program?
 
 
@@ -87,8 +90,10 @@ def tree(kind: str, level: str = "guided") -> Files:
             del files[name]
         add("Graph.hpp", markers.starter(markers.open_graph(course), course))
     for name, (content, program) in files.items():
-        if name.endswith("Makefile"):
-            content = tasks.numbered(content.decode(), course.numbers).encode()
+        if name.endswith((".hpp", ".cpp", ".js", ".mk", "Makefile")):
+            add(name, SAID.sub(lambda said: tasks.numbered(
+                said[0], course.numbers), content.decode()), program)
+            content = files[name][0]
         if name.endswith((".md", ".sh", "Makefile")):
             text = pages.named(pages.translated(pathlib.Path(name).name,
                                                 content.decode(), course),
