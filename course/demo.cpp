@@ -7,7 +7,6 @@
 #include <iostream>
 #include <string>
 
-#include "CME212/BoundingBox.hpp"
 #include "CME212/SDLViewer.hpp"
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Image.hpp"
@@ -36,7 +35,7 @@ int main() try {
   viewer.add_sphere(Ball().center, Ball().radius);
   viewer.add_plane(PlaneConstraint().z);
   viewer.set_view(Point(1, -0.8, 0.4),
-                  CME212::BoundingBox(Point(0, -0.4, -0.75), Point(1, 0.6, 0)));
+                  {Point(0, -0.4, PlaneConstraint().z), Point(1, 0.6, 0)});
 
   std::filesystem::create_directories("demo");
   CME212::Video film("demo/tear.mp4", width, height, rate);

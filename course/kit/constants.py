@@ -1,26 +1,24 @@
 """The numbers of a year's assignment: constants.py [--check]     make constants
 
-[numbers] of tasks.toml has the acceleration of free fall [m/s^2], K [N/m], the
-height of the floor [m], and the ball's radius [m] and center [m]. This writes
-them, and what follows from them, wherever they stand: in the solution (and so
-in the starter), in pages, tests, mistakes, figures and scenes. --check names
-the places that have other numbers. Exit status: 0, or 1 with FILE:LINE. What
-is measured on the pages is not computed anew: test_mistakes.py and make
-check-full name what no longer holds."""
+[numbers] of tasks.toml has gravity [m/s^2], K [N/m], the height of the floor
+[m], the ball's radius [m] and center [m]. This writes them, and what follows
+from them, wherever they stand: in the solution (and so in the starter), in
+pages, tests, mistakes, figures and scenes. --check names places with others.
+Exit status: 0, or 1 with FILE:LINE. What is measured on the pages is not
+computed anew: test_mistakes.py and make check-full name what fails."""
 import math
 import pathlib
 import re
 import sys
-import tomllib
+from collections.abc import Iterator
 
 import tasks
 
-# FILE, then lines of it as they are, with a {name} in place of each number.
+# FILE..., then lines of it as they are, with a {name} in place of each number.
 PLACES = """
 mass_spring.hpp
   grav = {gravity};
-  double K = {K};
-  double K = {K})
+  double K = {K}
   double height = {floor})
   center = Point({center});
   double radius = {radius};
@@ -31,6 +29,7 @@ mass_spring.cpp
 course/tasks.toml
   below z = {floor} m
   center ({center}) m and radius {radius} m
+  every edge has K = {K} N/m
 course/3.2.md
   $g$ = {gravity} m/s
   $K$ = {K} N/m
@@ -49,7 +48,7 @@ course/6.1.md
   has {energy} J,
   energy ${floor} \\, g$
 course/6.2.md
-  {x}, {beside}, {over}
+  Point({x}, {beside}, {over})
   $z$ = {leaves} m
 course/tests/3.2.Problem1Force.cpp
   b.m[i] * {gravity})
@@ -58,7 +57,7 @@ course/tests/5.1.GravityForce.cpp
   b.m[i] * {gravity})
 course/tests/6.1.PlaneConstraint.cpp
   plane z = {floor} m
-  {-0.5, {below}, 0., {above}, {under}, -3., 2., {floor}, {below}}
+  -0.5, {below}, 0., {above}, {under}, -3., 2., {floor}, {below}}
   z < {floor};
   below ? {floor} : double(b.x
 course/tests/6.1.SphereConstraint.cpp
@@ -99,7 +98,12 @@ course/tests/cloth_calls.hpp
   ({radius}, center)
 course/tests/trial.hpp
   -{gravity} * start
+course/wrong/cloth.toml
+  double K = {K};
+  'double K = {K}) {', 'double K = 10 * {K}) {'
+  : z({floor} + 0 * height)
 course/wrong/forms/mass_spring.hpp
+  stiffness = {K};
   gravity = {gravity};
   position().z >= {floor})
   position().z = {floor};
@@ -108,37 +112,53 @@ course/wrong/forms/mass_spring.hpp
   ({radius} / norm(d))
   center) < {radius})
 course/wrong/program.toml
-  Constraint({Point({higher}), {radius}})
+  Constraint({Point({x}, {y}, {higher}), {radius}})
 course/wrong/tables.toml
-  mass == 1) return Point(0, 0, -{gravity})
+  Point(0, 0, -{gravity})
   {{below}, {under}, -3.}
   z = {floor},
 course/wrong/step.toml
   Point(0, 0, -{gravity})
+course/kit/test_programs.py
+  2 * -{gravity})
+course/pictures/draw.py
+  FLOOR = {floor}
+course/web/cloth.cpp
+  Problem1Force({K}, length_)
+  return {{K}, length_};
 course/web/figure.js
   low: {floor}, ball
   at: [0.5, 0.5, {floor}]}
   at: [{center}], radius: {radius}}
-data/scenes/constraints.toml
+data/scenes/constraints.toml data/scenes/tear.toml
   at 0 0 {floor}"
-  radius {radius}"
-data/scenes/tear.toml
-  at 0 0 {floor}"
-  radius {radius}"
+  at {x} {y} {z} radius {radius}"
+  from 0 -0.4 {floor} to
 """
-NUMBER = r"-?\d+(?:\.\d*)?"
+NUMBER = r"-?\d+(?:\.\d*)?(?:e[-+]\d+)?"
 
 
-def values(numbers: dict) -> dict[str, str]:
-    g, k, z, r = (float(numbers[name])
-                  for name in ("gravity", "K", "floor", "radius"))
-    x, y, c = numbers["center"]
-    three = {name: ", ".join(f"{a:g}" for a in all_of) for name, all_of in {
-        "center": (x, y, c), "higher": (x, y, c + 0.05)}.items()}
-    return three | {name: f"{round(a, 4):g}" for name, a in {
-        "gravity": g, "K": k, "root": math.sqrt(k),
-        "floor": z, "radius": r, "depth": -z, "x": x,
-        "beside": y + 0.01, "over": c + r - 0.0001, "leaves": c + 2 * r / 3,
+def values(text: str) -> dict[str, str]:
+    """What [numbers] of tasks.toml, a text, say.  Throws TasksError."""
+    tasks.parse(text)
+    numbers = tasks.tomllib.loads(text).get("numbers", {})
+    try:
+        g, k, z, r = (float(numbers.pop(name))
+                      for name in ("gravity", "K", "floor", "radius"))
+        x, y, c = map(float, numbers.pop("center"))
+        if numbers or not 0 < min(g, k, -z, r) or not math.isfinite(
+                g + k + z + r + x + y + c):
+            raise ValueError
+    except (KeyError, TypeError, ValueError):
+        line = 1 + text.partition("[numbers]")[0].count("\n")
+        raise tasks.TasksError([
+            f"{tasks.FILE}:{line}: [numbers] has gravity, K and radius > 0, "
+            "floor < 0, center with three numbers, no others"]) from None
+    return {name: f"{a:.12g}" for name, a in {
+        "gravity": g, "K": k, "floor": z, "radius": r, "depth": -z, "x": x,
+        "y": y, "z": c}.items()} | {name: f"{round(a, 4):g}" for name, a in {
+        "root": k ** 0.5, "beside": y + 0.01, "over": c + r - 0.0001,
+        "higher": c + 0.05, "leaves": c + 2 * r / 3,
         "below": z - 0.125, "above": z + 0.0001, "under": z - 0.0001,
         "outside": r + 0.001, "inside": r - 0.001, "sunk": z - 0.02,
         "deep": r - 0.01, "touches": r + 0.01, "past": r + 0.05,
@@ -146,33 +166,35 @@ def values(numbers: dict) -> dict[str, str]:
         "fall": f"{math.sqrt(-2 * z / g):.3f}", "energy": f"{z * g:.3f}"}
 
 
+def places() -> Iterator[tuple[str, list[str]]]:
+    every = PLACES.replace("{center}", "{x}, {y}, {z}").strip()
+    for block in re.split(r"\n(?=\S)", every):
+        files, *lines = block.split("\n")
+        yield from ((file, [line[2:] for line in lines])
+                    for file in files.split())
+
+
 def written(text: str, lines: list[str], of: dict[str, str]) -> tuple[str, str]:
-    """The text with the numbers in its places; the first place that is not
-    there."""
+    """The text with the numbers in its places; a place that is not there."""
     for line in lines:
-        parts = re.split(r"\{(\w+)\}", line)
-        known = [part if k % 2 == 0 or part in of else "" for k, part in
-                 enumerate(parts)]
-        pattern = "".join(
-            re.escape(part) if k % 2 == 0
-            else ", ".join([NUMBER] * (1 + of[part].count(",")))
-            for k, part in enumerate(known))
-        new = "".join(part if k % 2 == 0 else of[part]
-                      for k, part in enumerate(known))
-        if not re.search(pattern, text):
+        pattern = re.sub(r"\\{\w+\\}", lambda _: NUMBER, re.escape(line))
+        new = re.sub(r"{(\w+)}", lambda name: of[name[1]], line)
+        text, many = re.subn(pattern, lambda _, new=new: new, text)
+        if not many:
             return text, line
-        text = re.sub(pattern, lambda _: new, text)
     return text, ""
 
 
 def main(check: bool) -> int:
-    numbers = tomllib.loads((tasks.ROOT / tasks.FILE).read_text())["numbers"]
-    of, wrong = values(numbers), []
-    for block in re.split(r"\n(?=\S)", PLACES.strip()):
-        file, *lines = block.split("\n")
+    try:
+        of = values((tasks.ROOT / tasks.FILE).read_text("utf-8"))
+    except tasks.TasksError as error:
+        sys.exit(str(error))
+    wrong = []
+    for file, lines in places():
         path = pathlib.Path(tasks.ROOT / file)
         text = path.read_text(encoding="utf-8")
-        new, missing = written(text, [line[2:] for line in lines], of)
+        new, missing = written(text, lines, of)
         if missing:
             wrong.append(f"{file}:1: has no '{missing}'")
         elif new != text and check:

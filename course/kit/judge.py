@@ -454,8 +454,8 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
                     f"program ends otherwise in {test}, {result.status}: "
                     f"{result.text or f'expected {result.expected}'}"
                     + (f", got {result.got}" if result.got else "")
-                    + "\nThat is no mistake of a student or of the solution: "
-                    "grade on a system as above")
+                    + "\nThat is no mistake of a student: grade on a system as "
+                    "above, with [numbers] by which the cloth meets the ball")
         text = json.dumps({"secret": kit.secret.hex(), "answers": {
             test: result.answers for test, result in results.items()}})
         with open(os.open(folder / "answers.json", os.O_WRONLY | os.O_CREAT,

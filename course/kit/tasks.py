@@ -144,8 +144,11 @@ def parse(text: str, name: str = FILE) -> Course:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"at line (\d+)", str(error))
-        raise TasksError([f"{name}:{line[1] if line else 1}: {error}"]) \
-            from None
+        number = int(line[1]) if line else 1
+        row = text.splitlines()[number - 1]
+        raise TasksError([f"{name}:{number}: {error}" + (
+            "; a number is written as 0.2 or -0.5"
+            if re.search(r"=\s*\[?[-+.,\d]", row) else "")]) from None
     if wrong := [f"{name}:1: {fault}" for fault in wrong_keys("", data)]:
         raise TasksError(wrong)
     words = in_language(data["language"]) if "language" in data else {}

@@ -12,6 +12,7 @@ import unittest
 import unittest.mock
 
 import child
+import constants
 import markers
 import mistakes
 import pages
@@ -483,6 +484,35 @@ class Repository(unittest.TestCase):
         for task in course.tasks.values():
             self.assertLessEqual(set(task.tests), names, task.id)
         self.assertEqual(course.points, 100)
+
+
+class Constants(unittest.TestCase):
+    TEXT = (tasks.ROOT / tasks.FILE).read_text("utf-8")
+    OLD = TEXT[TEXT.index("gravity ="):TEXT.index("\n\n# ---")]
+
+    def test_other_numbers(self):
+        """They leave no old one, C++ and TOML can read them; and back."""
+        old, new = (constants.values(self.TEXT.replace(self.OLD, numbers))
+                    for numbers in (self.OLD, "gravity = 9.80665\nK = 2e6\n"
+                                    "floor=-1\nradius=1e-5\ncenter=[0, 1, -2]"))
+        places = dict(constants.places())
+        for path in {*map(tasks.ROOT.joinpath, places), *(
+                tasks.ROOT / "course").rglob("*.[chmt]*[dlp]")}:
+            text = path.read_text("utf-8").replace(self.OLD, "")
+            lines = places.get(str(path.relative_to(tasks.ROOT)), [])
+            changed, missing = constants.written(text, lines, new)
+            self.assertNotRegex(changed, r"9\.81?\b|[^,] -0\.75\b|"
+                                r"(?<!nt )K = 100[; )]", path)
+            self.assertEqual([missing, *constants.written(changed, lines, old)],
+                             ["", text, ""], path)
+
+        for old, new, said in (
+                ("0.15", "0,2", "12: Expected .*; a number is written as 0.2"),
+                ("0.15", ".2", "12: Invalid .*; a number is written as 0.2"),
+                ("-0.75", "1", "8"), ("[0.5, ", "[", "8"), ("K =", "k =", "8")):
+            with self.assertRaisesRegex(tasks.TasksError,
+                                        rf"\Acourse/tasks.toml:{said}.*\Z"):
+                constants.values(self.TEXT.replace(old, new, 1))
 
 
 class Child(unittest.TestCase):

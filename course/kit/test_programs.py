@@ -58,7 +58,7 @@ TASK("5.1.GravityForce", weight) {
   kit::fill(g, b);
   kit::with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {
     F gravity;
-    CHECK_NEAR(kit::force_on(gravity, g, 0), Point(0, 0, -19.62), 1e-9);
+    CHECK_NEAR(kit::force_on(gravity, g, 0), Point(0, 0, 2 * -9.81), 1e-9);
   });
 }
 TASK("5.1.GravityForce", empty) {}

@@ -23,6 +23,7 @@ import mistakes  # noqa: E402
 HEIGHTS = {2: 416, 3: 330, 4: 300}  # [pixels], by the number of panels
 
 PROGRAM = "mass_spring.cpp"
+FLOOR = -0.75  # the plane [m]
 
 # A picture is a row of panels: a mistake or none, the stage, times [s], and the
 # lowest z in view [m]. Beside mistakes that look right is the correct cloth.
@@ -41,13 +42,13 @@ PICTURES: dict[str, list[tuple[str, str, list[float], float]]] = {
                      ("c = 1", "forces", [2], -1.05),
                      ("damped", "forces", [2], -1.05)],
     "5.2": [("", "forces", [0.7], -1.15), ("damped", "forces", [5], -1.15)],
-    "6.1-mistakes": [("pin by place", "constraints", [0.45], -0.75),
-                     ("ball keeps v", "constraints", [0.37], -0.75),
-                     ("floor keeps v", "constraints", [2.5], -0.75),
-                     ("", "constraints", [2.5], -0.75)],
-    "6.2": [("", "constraints", [0.35, 0.45], -0.75)],
-    "6.2-mistakes": [("ball only", "constraints", [0.35, 0.45, 0.6], -0.75)],
-    "7.2": [("", "tear", [0.45, 0.6], -0.75)],
+    "6.1-mistakes": [("pin by place", "constraints", [0.45], FLOOR),
+                     ("ball keeps v", "constraints", [0.37], FLOOR),
+                     ("floor keeps v", "constraints", [2.5], FLOOR),
+                     ("", "constraints", [2.5], FLOOR)],
+    "6.2": [("", "constraints", [0.35, 0.45], FLOOR)],
+    "6.2-mistakes": [("ball only", "constraints", [0.35, 0.45, 0.6], FLOOR)],
+    "7.2": [("", "tear", [0.45, 0.6], FLOOR)],
 }
 
 

@@ -4,7 +4,8 @@
 
 TASK("6.1.PlaneConstraint", plane_is_solid) {
   Bodies b;
-  for (double z : {-0.5, -0.875, 0., -0.7499, -0.7501, -3., 2., -0.75, -0.875})
+  for (double z : std::initializer_list<double>{
+           -0.5, -0.875, 0., -0.7499, -0.7501, -3., 2., -0.75, -0.875})
     b.add(Point(0.25 * b.size, 0.5, z), 0.5, Point(1, -2, z < -2 ? 4 : -4));
   b.vary();
   for (int i = 1; i < b.size; ++i) b.join(i - 1, i, given_K, 0.5);

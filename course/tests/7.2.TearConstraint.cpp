@@ -100,7 +100,8 @@ TASK("7.2.TearConstraint", tear_takes_a_ball) {
 
 TASK("7.2.TearConstraint", tear_looks_at_the_radius) {
   Bodies b;
-  for (double radius : {0.149, 0.151, 0.1, 0.2, 0.3, 0.05})
+  for (double radius :
+       std::initializer_list<double>{0.149, 0.151, 0.1, 0.2, 0.3, 0.05})
     for (const Point& d : {Point(0, 0, 1), Point(0, 0, -1), Point(0.6, 0, 0.8),
                            Point(-0.6, -0.8, 0)})
       b.add(Point(0.5, 0.5, -0.5) + radius * d, 1, Point(0, 0, 0.001 * b.size));
