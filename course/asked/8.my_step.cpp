@@ -9,20 +9,31 @@ namespace kit {
 struct FarNet : Net {
   int number;
   explicit FarNet(int n) : number(n) {
-    for (int i = 0; i < size; ++i) {
-      const Point body = told({Question::body, number, i, 0, {}});
-      start.add(told({Question::start, number, i, 0, {}}), body.x);
-      begin = body.y;
-    }
+    const Reply bodies = told({Question::body, number, 0, {}});
+    const Reply places = told({Question::start, number, 0, {}});
+    for (int i = 0; i < size; ++i) start.add(places.of[i], bodies.of[i].x);
+    begin = bodies.of[0].y;
   }
   Point pin(int i, double t) const override {
-    return told({Question::pin, number, i, t, {}});
+    return pins_.at({Question::pin, number, t, {}}).of[i];
   }
   Point force(int i, double t, const Places& x) const override {
-    Question question = {Question::force, number, i, t, {}};
+    Question question = {Question::force, number, t, {}};
     for (int k = 0; k < size; ++k) question.x[k] = x(k);
-    return told(question);
+    return forces_.at(question).of[i];
   }
+
+ private:
+  /** The last question and its reply: nodes ask for the same in turn. */
+  struct Last {
+    Question question = {Question::body, -1, 0, {}};
+    Reply reply;
+    const Reply& at(const Question& q) {
+      if (!(q == question)) question = q, reply = told(q);
+      return reply;
+    }
+  };
+  mutable Last pins_, forces_;
 };
 static void answer_exactly(const char* what, const Trial& trial) {
   const Bodies exact = trial.exact(8000);

@@ -1,9 +1,9 @@
 /** @file law.cpp
  * The nets of 8.my_step.cpp, in a process that no submission shares: it alone
- * knows the springs, and counts the forces that it is asked for. From stdin it
- * reads the grader's secret, then each Question; replies go to stdout. Forces
+ * knows the springs, and counts the forces that it is asked for: of all nodes at
+ * once, as each question takes two changes of the process. From stdin it reads the grader's secret, then each Question; replies go to stdout. Forces
  * beyond Net::forces on each node are zero. At the end it writes to stderr how
- * many it was asked for, on each node of net 0. */
+ * often it was asked for those of net 0. */
 #include <unistd.h>
 
 #include "../tests/trial.hpp"
@@ -27,24 +27,26 @@ int main() {
   long asked[3] = {};  // the third run is of net 0, too
   Question q;
   while (read(0, &q, sizeof q) == sizeof q) {
-    if (q.net < 0 || q.net > 2 || q.node < 0 || q.node >= Net::size) return 2;
+    if (q.net < 0 || q.net > 2) return 2;
     const kit::Trial& net = nets[q.net % 2];
-    Point reply;
-    switch (q.what) {
-      case Question::body:
-        reply = Point(net.start.m[q.node], net.begin, 0);
-        break;
-      case Question::start:
-        reply = net.start.x[q.node];
-        break;
-      case Question::pin:
-        reply = net.pin(q.node, q.t);
-        break;
-      case Question::force:
-        if (++asked[q.net] <= long(Net::forces) * Net::size)
-          reply = net.force(q.node, q.t, [&q](int i) { return q.x[i]; });
-    }
+    kit::Reply reply;
+    if (q.what == Question::force && ++asked[q.net] > Net::forces)
+      q.net = -1;  // no more
+    for (int i = 0; i < Net::size && q.net >= 0; ++i)
+      switch (q.what) {
+        case Question::body:
+          reply.of[i] = Point(net.start.m[i], net.begin, 0);
+          break;
+        case Question::start:
+          reply.of[i] = net.start.x[i];
+          break;
+        case Question::pin:
+          if (Net::is_pin(i)) reply.of[i] = net.pin(i, q.t);
+          break;
+        case Question::force:
+          reply.of[i] = net.force(i, q.t, [&q](int k) { return q.x[k]; });
+      }
     if (write(1, &reply, sizeof reply) != sizeof reply) return 2;
   }
-  std::fprintf(stderr, "%.17g\n", double(asked[0]) / Net::size);
+  std::fprintf(stderr, "%ld\n", asked[0]);
 }

@@ -27,14 +27,18 @@ struct Draw {
     return least + (most - least) * double(x >> 11) / 9007199254740992.;
   }
 };
-/** What law.cpp says of a net. */
+/** What law.cpp is asked of a net, for all bodies at once. */
 struct Question {
   enum What { body, start, pin, force } what;  // body: (mass, begin, 0)
-  int net, node;
+  int net;
   double t;
   Point x[12];
+  bool operator==(const Question&) const = default;
 };
-Point told(const Question& question);
+struct Reply {
+  Point of[12];
+};
+Reply told(const Question& question);
 
 }  // namespace kit
 #endif

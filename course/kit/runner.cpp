@@ -122,8 +122,8 @@ double drawn(double usual, double least, double most) {
   draws = true;
   return draw ? (*draw)(least, most) : usual;
 }
-Point told(const Question& question) {
-  Point reply;
+Reply told(const Question& question) {
+  Reply reply;
   if (write(questions, &question, sizeof question) != sizeof question ||
       read(replies, &reply, sizeof reply) != sizeof reply)
     _exit(3);
