@@ -1,9 +1,10 @@
 /** @file law.cpp
  * The nets of 8.my_step.cpp, in a process that no submission shares: it alone
- * knows the springs, and counts the forces that it is asked for: of all nodes at
- * once, as each question takes two changes of the process. From stdin it reads the grader's secret, then each Question; replies go to stdout. Forces
- * beyond Net::forces on each node are zero. At the end it writes to stderr how
- * often it was asked for those of net 0. */
+ * knows the springs, and counts the forces that it is asked for, of all nodes
+ * at once: each question changes the process twice. From stdin it reads the
+ * grader's secret, then each Question; replies go to stdout. Forces beyond
+ * Net::forces on each node are zero. At the end it writes to stderr how often
+ * it was asked for those of net 0. */
 #include <unistd.h>
 
 #include "../tests/trial.hpp"
@@ -32,8 +33,7 @@ int main() {
     kit::Reply reply;
     if (q.what == Question::force && ++asked[q.net] > Net::forces)
       q.net = -1;  // no more
-    for (int i = 0; i < Net::size && q.net >= 0; ++i)
-      switch (q.what) {
+    for (int i = 0; i < Net::size && q.net >= 0; ++i) switch (q.what) {
         case Question::body:
           reply.of[i] = Point(net.start.m[i], net.begin, 0);
           break;

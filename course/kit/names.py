@@ -26,6 +26,8 @@ BASES = {
         rf"\b(?:Pin|Plane|Sphere)Constraint{BASE}"),
 }
 CALL = re.compile(rf"\boperator{GAP}\({GAP}\){GAP}\(")
+# A TearConstraint by another name.
+NAMED_TEAR = re.compile(r"\b(?:using|typedef)\b[^;]{0,300}\bTearConstraint\b")
 REMOVAL = re.compile(rf"\bremove_node{GAP}\(")
 PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
 INCLUDED = re.compile(r'#\s*include\s*["<]mass_spring\.hpp[">]')
@@ -93,9 +95,10 @@ def defines(files: dict[str, bytes]) -> tuple[str, ...]:
         if base := pattern.search(text):
             found[key] = base[1]
     # A submission that replaced the constraint of section 6 has only that.
-    for name in sorted(tearing(text),
-                       key=lambda name: name == "SphereConstraint"):
-        found.setdefault("KIT_TEAR", name)
+    if not NAMED_TEAR.search(text):
+        for name in sorted(tearing(text),
+                           key=lambda name: name == "SphereConstraint"):
+            found.setdefault("KIT_TEAR", name)
     main: tuple[str, ...] = (
         ("KIT_PROGRAM",) if needs_program(parts) else ())
     if has_stages(parts):

@@ -48,8 +48,9 @@ SUSPECT = [
     (r"/proc/|/dev/fd|/autograder", "names a file of the system"),
     (r"\b(_exit|_Exit|quick_exit|at_quick_exit|atexit|on_exit|longjmp"
      r"|siglongjmp)\b", "leaves the program"),
-    (r"\b(signal|sigaction|raise|fork|vfork|clone|execv\w*|execl\w*|popen"
-     r"|system|dlopen|dlsym|mmap|dup2?|pipe|socket|environ|getenv|setrlimit)"
+    (r"\b(signal|sigaction|raise|fork|vfork|clone(?!\s*\(\s*\))|execv\w*"
+     r"|execl\w*|popen|system|dlopen|dlsym|mmap|dup2?|pipe|socket|environ"
+     r"|getenv|setrlimit)"
      r"\s*\(", "calls the system"),
     (r"\bkit\b|check\.hpp|runner\.cpp|\bKIT_\w+|\bTASK\s*\("
      r"|__(a|ub)san_|__sanitizer", OF_THE_GRADER),

@@ -220,7 +220,10 @@ Graph.hpp:9:1: error: 'z' was not declared
         self.assertEqual(found, ("KIT_FORCE_BASE=Law", "KIT_GRAPH=Net",
                                  "KIT_TEAR=Rip"))
         self.assertEqual(names.defines({"mass_spring.hpp": b"""
-            using Cloth = Graph<A, B>; using GraphType = Cloth;"""}), ())
+            using Cloth = Graph<A, B>; using GraphType = Cloth;
+            namespace hw { struct Rip { void operator()(Cloth& g, double) {
+              g.remove_node(n); } }; }
+            using TearConstraint = hw::Rip;"""}), ())
 
 
 class Mend(unittest.TestCase):

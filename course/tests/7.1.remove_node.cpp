@@ -50,6 +50,15 @@ TASK("7.1.remove_node", a_grid_is_emptied_and_built_again) {
   s.hold();
 }
 
+TASK("7.1.remove_node", half_of_a_large_grid_is_removed) {
+  TestSubject s(grid(20));
+  Dice dice = drawn_dice(72);
+  DID("a grid of 20 by 20 nodes; removed 200 nodes");
+  for (int k = 0; k < 200; ++k)
+    s.remove_node(s.m.nodes[dice(s.m.nodes.size())]);
+  s.hold();
+}
+
 TASK("7.1.remove_node", a_node_of_lowest_and_of_highest_index_is_removed) {
   for (bool last : {false, true}) {
     TestSubject s(grid(4));

@@ -77,9 +77,21 @@
 
 // ------------------------------------------ Names that may be missing
 
+#ifndef KIT_FORCE_BASE
+#define KIT_FORCE_BASE ZeroForce
+#endif
+#ifndef KIT_CONSTRAINT_BASE
+#define KIT_CONSTRAINT_BASE ZeroConstraint
+#endif
+#ifndef KIT_TEAR
+#define KIT_TEAR TearConstraint
+#endif
+
 // ::ZeroForce is the submission's if it has one. If not, the language looks
 // into the namespaces that the global one uses, and finds these.
 namespace kit_missing {
+struct KIT_FORCE_BASE;  // it may be in a namespace
+struct KIT_CONSTRAINT_BASE;
 struct ZeroForce;
 struct Force;
 struct Problem1Force;
@@ -117,15 +129,6 @@ using namespace kit_missing;
 
 #ifndef KIT_GRAPH
 #define KIT_GRAPH GraphType
-#endif
-#ifndef KIT_FORCE_BASE
-#define KIT_FORCE_BASE ZeroForce
-#endif
-#ifndef KIT_CONSTRAINT_BASE
-#define KIT_CONSTRAINT_BASE ZeroConstraint
-#endif
-#ifndef KIT_TEAR
-#define KIT_TEAR TearConstraint
 #endif
 
 namespace kit {

@@ -95,7 +95,8 @@ struct Cloning<Base, Self> : Base {
   }
 };
 
-/** The same as a child of Base, whose virtual call has the type Call. */
+/** The same as a child of Base, whose call has the type Call. It may be no
+ * virtual one, but call others: so no override, and Child is abstract then. */
 template <typename Base, typename Free, typename Call>
 struct Child;
 template <typename Base, typename Free, typename R, typename C, typename A,
@@ -104,7 +105,7 @@ struct Child<Base, Free, R (C::*)(A, B)>
     : Cloning<Base, Child<Base, Free, R (C::*)(A, B)>>, private Free {
   using Called = Base;
   using Free::Free;
-  R operator()(A a, B b) override { return Free::call(a, b); }
+  R operator()(A a, B b) { return Free::call(a, b); }
 };
 template <typename Base, typename Free, typename R, typename C, typename A,
           typename B>
@@ -112,7 +113,7 @@ struct Child<Base, Free, R (C::*)(A, B) const>
     : Cloning<Base, Child<Base, Free, R (C::*)(A, B) const>>, private Free {
   using Called = Base;
   using Free::Free;
-  R operator()(A a, B b) const override { return Free::call(a, b); }
+  R operator()(A a, B b) const { return Free::call(a, b); }
 };
 
 template <typename Base>
