@@ -22,8 +22,8 @@ commands=(
   "cd ../starter && make deps"
   "cd ../starter && make run STAGE=problem1"
   "cd ../starter && make test SECTION=3.1"
-  "make test_nodes test_edges && ./test_nodes && ./test_edges"
-  "tools/deps.sh lab && make cloth"
+  "make deps && make test_nodes test_edges && ./test_nodes && ./test_edges"
+  "make cloth"
   "./cloth --config data/scenes/curtain.toml --headless --t-end 0.1"
 )
 # The log's words, beside status 0.
