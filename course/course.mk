@@ -3,7 +3,7 @@
 # A value given to a target reaches its program by the environment, whatever it
 # holds: never expanded, and read by no shell.
 $(foreach name,DIR DUE FEEDBACK FILE JSON LEVEL OUT RESULTS TIMES,\
-  $(if $(filter command environment,$(firstword $(origin $(name)))),\
+  $(if $(filter command environment override,$(firstword $(origin $(name)))),\
     $(eval override $(name) := $$(value $(name)))$(eval export $(name))))
 
 .PHONY: starter solution constants

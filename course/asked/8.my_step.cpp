@@ -15,23 +15,27 @@ struct FarNet : Net {
     begin = bodies.of[0].y;
   }
   Point pin(int i, double t) const override {
-    return pins_.at({Question::pin, number, t, {}}).of[i];
+    const Question question = {Question::pin, number, t, {}};
+    if (!(question == pins_.question)) pins_ = {question, told(question)};
+    return pins_.reply.of[i];
   }
   Point force(int i, double t, const Places& x) const override {
     Question question = {Question::force, number, t, {}};
     for (int k = 0; k < size; ++k) question.x[k] = x(k);
-    return forces_.at(question).of[i];
+    // Each node has one force of a reply: the same one again is asked for
+    // again.
+    if (!(question == forces_.question) || forces_.used[i])
+      forces_ = {question, told(question)};
+    forces_.used[i] = true;
+    return forces_.reply.of[i];
   }
 
  private:
   /** The last question and its reply: nodes ask for the same in turn. */
   struct Last {
     Question question = {Question::body, -1, 0, {}};
-    Reply reply;
-    const Reply& at(const Question& q) {
-      if (!(q == question)) question = q, reply = told(q);
-      return reply;
-    }
+    Reply reply = {};
+    bool used[size] = {};
   };
   mutable Last pins_, forces_;
 };

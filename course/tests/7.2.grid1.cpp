@@ -179,8 +179,7 @@ static std::string difference(Sheet s, int steps,
     auto n = g.add_node(s.x[i]);
     velocity(n) = s.v[i];
     mass(n) = s.m[i];
-    if constexpr (requires { *start_in(n.value()) = s.x[i]; })
-      *start_in(n.value()) = s.x[i];
+    keep_start(n);
   }
   for (const Spring& spring : s.springs)
     set_spring(joined(g, node_of(g, spring.a), node_of(g, spring.b)), spring);

@@ -72,6 +72,13 @@ void set_springs(G& g, const Bodies& bodies) {
       set_spring(joined(g, node_of(g, s.b), node_of(g, s.a)), s);
   }
 }
+/** @a n is where it is at first: some pins read that from its value. */
+template <typename N>
+void keep_start(N n) {
+  if constexpr (requires { start_in(n.value()); })
+    if constexpr (is_there<decltype(start_in(n.value()))>)
+      *start_in(n.value()) = n.position();
+}
 /** Fill the empty graph @a g: body i is node(i). */
 template <typename G>
 void fill(G& g, const Bodies& bodies) {
@@ -79,9 +86,7 @@ void fill(G& g, const Bodies& bodies) {
     auto n = g.add_node(bodies.x[i]);
     velocity(n) = bodies.v[i];
     mass(n) = bodies.m[i];
-    if constexpr (requires { start_in(n.value()); })
-      if constexpr (is_there<decltype(start_in(n.value()))>)
-        *start_in(n.value()) = bodies.x[i];
+    keep_start(n);
   }
   set_springs(g, bodies);
 }
