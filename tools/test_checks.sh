@@ -77,6 +77,8 @@ own() { attempt env -u SPEED timeout 60 make -n own B="$tmp/own"; expect 0; }
 printf '#include "CME212/SFML_Viewer.hpp"\n#include <gtest/gtest.h>\n' >own.cpp
 own; says libviewer.a; says -fsanitize=address,undefined
 ok "make: a program is linked with what it includes"
+attempt timeout 60 make grade-tests FILE=none.cpp
+expect 2; says 'none.cpp: No such file'; ok "make: FILE reaches the grader"
 printf '#include "own.hpp"\nint main() {}\n' >own.cpp
 for makefile in Makefile course/starter/Makefile; do
   [ $makefile = Makefile ] || { cp $makefile .; touch tests/tests.mk; }
