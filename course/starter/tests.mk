@@ -48,7 +48,7 @@ hint:
 	@mkdir -p $(B) && echo '$(TASK)' >>$(B)/hints
 	@awk -F '\t' -v task='$(TASK)' 'NR == FNR { n += $$0 == task; next } \
 	  $$1 == task && ++all <= n { print "Hint " all ": " $$2 } \
-	  END { if (n < all) print all - n " left" }' \
+	  END { print n < all ? all - n " left" : "That is all." }' \
 	  $(B)/hints tests/hints | fold -sw 80
 
 .SECONDEXPANSION:
