@@ -179,7 +179,7 @@ def written(text: str, lines: list[str], of: dict[str, str]) -> tuple[str, str]:
     for line in lines:
         pattern = re.sub(r"\\{\w+\\}", lambda _: NUMBER, re.escape(line))
         new = re.sub(r"{(\w+)}", lambda name: of[name[1]], line)
-        text, many = re.subn(pattern, lambda _, new=new: new, text)
+        text, many = re.subn(pattern, new.replace("\\", r"\\"), text)
         if not many:
             return text, line
     return text, ""

@@ -506,13 +506,13 @@ class Constants(unittest.TestCase):
             self.assertEqual([missing, *constants.written(changed, lines, old)],
                              ["", text, ""], path)
 
-        for old, new, said in (
+        for right, wrong, said in (
                 ("0.15", "0,2", "12: Expected .*; a number is written as 0.2"),
                 ("0.15", ".2", "12: Invalid .*; a number is written as 0.2"),
                 ("-0.75", "1", "8"), ("[0.5, ", "[", "8"), ("K =", "k =", "8")):
             with self.assertRaisesRegex(tasks.TasksError,
                                         rf"\Acourse/tasks.toml:{said}.*\Z"):
-                constants.values(self.TEXT.replace(old, new, 1))
+                constants.values(self.TEXT.replace(right, wrong, 1))
 
 
 class Child(unittest.TestCase):
