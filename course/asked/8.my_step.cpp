@@ -22,8 +22,7 @@ struct FarNet : Net {
   Point force(int i, double t, const Places& x) const override {
     Question question = {Question::force, number, t, {}};
     for (int k = 0; k < size; ++k) question.x[k] = x(k);
-    // Each node has one force of a reply: the same one again is asked for
-    // again.
+    // A force counts each time: the second of a node takes another question.
     if (!(question == forces_.question) || forces_.used[i])
       forces_ = {question, told(question)};
     forces_.used[i] = true;

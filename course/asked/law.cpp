@@ -31,9 +31,9 @@ int main() {
     if (q.net < 0 || q.net > 2) return 2;
     const kit::Trial& net = nets[q.net % 2];
     kit::Reply reply;
-    if (q.what == Question::force && ++asked[q.net] > Net::forces)
-      q.net = -1;  // no more
-    for (int i = 0; i < Net::size && q.net >= 0; ++i) switch (q.what) {
+    const bool is_spent =
+        q.what == Question::force && ++asked[q.net] > Net::forces;
+    for (int i = 0; i < Net::size && !is_spent; ++i) switch (q.what) {
         case Question::body:
           reply.of[i] = Point(net.start.m[i], net.begin, 0);
           break;

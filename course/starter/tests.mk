@@ -22,6 +22,7 @@ stages    = $(if $(findstring KIT_PROGRAM,$(defined)),$(shell \
               grep -qsw STAGE mass_spring.cpp && echo -DKIT_STAGES))
 # What all programs are built with: another compiler builds them anew.
 built_by  = $(B)/tests.built
+build     = $(CXX) $(common) $(debug) $(CPPFLAGS) $(CXXFLAGS)
 unit      = @mkdir -p $(@D); printf '\#include "%s"\n' $(1) >$(B)/tests/$*.cpp
 
 .PHONY: test section
@@ -67,6 +68,5 @@ $(frame): $(B)/tests/%.o: tests/%.cpp tests/kit.cpp $(built_by)
 	$(call unit,tests/$*.cpp tests/kit.cpp)
 	@$(CXX) $(of_test) -g1 -c -o $@ $(B)/tests/$*.cpp
 $(built_by): FORCE
-	@mkdir -p $(B); echo '$(CXX) $(common) $(debug) $(CPPFLAGS) $(CXXFLAGS)' | \
-	  cmp -s - $@ || echo '$(CXX) $(common) $(debug) $(CPPFLAGS) $(CXXFLAGS)' >$@
+	@mkdir -p $(B); echo '$(build)' | cmp -s - $@ || echo '$(build)' >$@
 -include $(wildcard $(B)/tests/*.d)
