@@ -167,7 +167,6 @@ of_charts() {
   step lint        tools/lint.sh
   step chart_rule  python3 lab/charts/test_charts.py
   step drawn       drawn
-  step judging     python3 lab/advice/test_suite.py
   step graphs      in_folder . graphs
 }
 of_readme() { step readme tools/check_readme.sh; }
@@ -323,7 +322,6 @@ turns() {
   turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000
   turn submit    "$limit" tools/test_submit.sh
   turn sweep     "$limit" tools/test_sweep.sh
-  turn deps      "$limit" tools/test_deps.sh
   turn grids     "$limit" same_grids
 }
 one_half() { turns; }
