@@ -47,20 +47,10 @@ override STEP := $(value STEP)
 try: export FILE := $(FILE)
 try: export STEP := $(STEP)
 override RECORD := $(value RECORD)
-try: export RECORD := $(RECORD)
 try:
 	@echo "make try: compiles and measures the step in $${FILE:-no file}," \
 	  "within a minute" >&2
 	@tools/deps.sh grade draw && python3 lab/try/try.py
-
-# ./cloth with a method "yours": lab/try/film.py gives what TRY_ names, and builds
-# another one in the jail by the words that this writes.
-.PHONY: try_film
-try_film: $(B)/lab/run/cloth.o $(B)/liblab.a $(B)/libviewer.a
-	@$(CXX) $(lab_flags) $(speed) -w $$TRY_DEFINES -o $$TRY_OUT \
-	  lab/try/film.cpp $(filter-out %/libviewer.a,$^) $(draw_libs) $(LDLIBS)
-	@echo $(lab_flags) $(speed) $(filter-out %/libviewer.a,$^) $(draw_libs) \
-	  $(LDLIBS)
 
 # ---- Charts: lab/charts/README.md
 

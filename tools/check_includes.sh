@@ -20,7 +20,7 @@ lab/scenes    : lab/methods
 lab/stepping  : lab/scenes lab/stability
 lab/advice    : lab/stepping
 lab/charts    : lab/stability lab/scenes
-lab/try       : mass_spring lab/methods
+lab/try       : mass_spring
 lab/bench     : lab/fast
 lab/live      : lab/stepping
 lab/viewer    : lab/stepping

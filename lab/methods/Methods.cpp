@@ -31,16 +31,6 @@ template <typename M>
 constexpr const MethodEntry& line = *std::ranges::find(
     lines, M::info.name, [](const MethodEntry& m) { return m.info.name; });
 
-/** What all_methods() returns. */
-std::vector<const MethodEntry*>& all() {
-  static std::vector<const MethodEntry*> list = [] {
-    std::vector<const MethodEntry*> made;
-    for (const MethodEntry& m : lines) made.push_back(&m);
-    return made;
-  }();
-  return list;
-}
-
 /** Null of a method without measured costs. */
 const MethodCost* cost_of(const MethodInfo& info) {
   const auto cost =
@@ -67,12 +57,9 @@ constinit const MethodEntry& tr_bdf2 = line<TrBdf2>;
 constinit const MethodEntry& xpbd = line<Xpbd>;
 }  // namespace table
 
-void add_method(const MethodEntry& own) { all().push_back(&own); }
-const std::vector<const MethodEntry*>& all_methods() { return all(); }
-
 const MethodEntry* find_method(std::string_view name) {
-  for (const MethodEntry* m : all())
-    if (m->info.name == name) return m;
+  for (const MethodEntry& m : lines)
+    if (m.info.name == name) return &m;
   return nullptr;
 }
 

@@ -331,7 +331,7 @@ const MethodEntry* method_named(std::string_view name, std::string& hint) {
     names.push_back(other.same ? other.name : other.method);
   }
   const MethodEntry* method = find_method(name);
-  for (const MethodEntry* m : all_methods()) names.push_back(m->info.name);
+  for (const MethodEntry& m : methods) names.push_back(m.info.name);
   if (!method && hint.empty()) hint = did_you_mean(name, names);
   return method;
 }
