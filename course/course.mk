@@ -2,7 +2,7 @@
 
 # A value given to a target reaches its program by the environment, whatever it
 # holds: never expanded, and read by no shell.
-$(foreach name,DIR DUE FEEDBACK FILE JSON LEVEL OUT RESULTS TIMES,\
+$(foreach name,DIR DUE FEEDBACK FILE JSON LEVEL OUT RESULTS STARTER TIMES,\
   $(if $(filter command environment override,$(firstword $(origin $(name)))),\
     $(eval override $(name) := $$(value $(name)))$(eval export $(name))))
 
