@@ -47,7 +47,8 @@ class Year:
 
     def unpacked(self) -> pathlib.Path:
         """The folder with what is in the zip."""
-        return once.Kit.locked_part(f"year{self.version}", [self.zip], self.unpack)
+        return once.Kit.locked_part(f"year{self.version}", [self.zip],
+                                    self.unpack)
 
     def unpack(self, folder: pathlib.Path) -> None:
         with zipfile.ZipFile(self.zip) as archive:
@@ -90,8 +91,8 @@ def begun_with(taken: submission.Submission, course: tasks.Course,
         return None
     if version not in years():
         raise submission.BadInput(
-            f"begun with the starter of {submission.shown(version)}, which this "
-            "kit does not know: grade it by the kit of then; it knows "
+            f"begun with the starter of {submission.shown(version)}, which "
+            "this kit does not know: grade it by the kit of then; it knows "
             + ", ".join(sorted({*years(), course.starter} - {""})))
     taken.notes.append(f"begun with the starter of {version}")
     return years()[version]
@@ -111,7 +112,8 @@ def keep(folders: list[str]) -> None:
         add("starter.json", json.dumps(said, indent=1))
         for level, folder in zip(LEVELS, folders, strict=True):
             for name in KEPT:
-                add(f"{level}/{name}", (pathlib.Path(folder) / name).read_bytes())
+                add(f"{level}/{name}",
+                    (pathlib.Path(folder) / name).read_bytes())
     print(f"years: {path.relative_to(tasks.ROOT)}")
 
 
