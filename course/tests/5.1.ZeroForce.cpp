@@ -60,7 +60,7 @@ static void hold_parent_of_forces(const Bodies& b) {
   CHECK(sum > 0, "GravityForce or MassSpringForce to be a force");
 }
 
-/** What a test can ask of a force whose parent it can't name. */
+/** A question to a force whose parent no test can name. */
 template <typename Gravity>
 static void answer_own_force(const Bodies& b) {
   Cloth g;

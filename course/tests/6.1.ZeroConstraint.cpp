@@ -74,7 +74,7 @@ static void hold_parent_of_constraints() {
   CHECK(far > 0, "PlaneConstraint or SphereConstraint to move a node");
 }
 
-/** What a test can ask of a constraint whose parent it can't name. */
+/** A question to a constraint whose parent no test can name. */
 template <typename Plane>
 static void answer_own_place(const Bodies& b) {
   Cloth g;
