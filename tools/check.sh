@@ -242,13 +242,13 @@ advice() {
 skips_page() {
   command -v ffmpeg >/dev/null ||
     { echo "skipped: the page: ffmpeg is missing: make page-deps"; return; }
-  command -v chromium >/dev/null || {
-    echo "skipped: the page: chromium is missing: tools/deps.sh browser"; return; }
+  command -v chromedriver >/dev/null || {
+    echo "skipped: the page: chromedriver is missing: tools/deps.sh browser"; return; }
   compgen -G '/usr/lib/llvm-*/lib/clang/*/lib/wasi' >/dev/null ||
     { echo "skipped: the page: clang for wasm32: make page-deps"; return; }
-  ! /usr/bin/python3 -c 'import websocket' 2>/dev/null ||
+  ! /usr/bin/python3 -c 'import selenium' 2>/dev/null ||
     return 1
-  echo "skipped: the page: websocket is missing: tools/deps.sh browser"
+  echo "skipped: the page: selenium is missing: tools/deps.sh browser"
 }
 # The cloth of a starter and a solution as a page, and figures of mistakes.
 web() {

@@ -28,7 +28,7 @@ packages() {
                  "libclang-rt-N-dev-wasm32 python3" ;;
     page)   packages web
             echo "libeigen3-dev libtomlplusplus-dev ffmpeg pandoc git" ;;
-    browser) echo "chromium python3-websocket" ;;
+    browser) echo "chromium-driver python3-selenium firefox-esr webkit2gtk-driver xvfb" ;;
     *) echo "deps: no group '$1'; there are: build window film lab draw test" \
             "check python peers grade web page browser" >&2
        exit 2 ;;

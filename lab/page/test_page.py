@@ -11,8 +11,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/browsers"))
 from browser import Browser, run_tests  # noqa: E402
-from firefox import Firefox  # noqa: E402
-from webkit import WebKit  # noqa: E402
+from engines import Firefox, WebKit  # noqa: E402
 
 build = pathlib.Path(sys.argv[1])
 address = "file://" + str((build / "page/index.html").resolve())
