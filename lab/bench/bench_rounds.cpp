@@ -6,9 +6,8 @@
  *   build/bench_rounds SIDE K                 # all methods and rounds, as CSV
  *   build/bench_rounds SIDE K METHOD ROUNDS   # measured(), for callgrind
  *
- * Verlet makes ROUNDS steps. ROUNDS 0: the first step, which makes a factor.
- * mollified-impulse makes ROUNDS inner steps. K may be mixed, the problem of
- * the charts.
+ * Verlet makes ROUNDS steps, mollified-impulse ROUNDS inner steps. K may be
+ * mixed, the problem of the charts.
  */
 #include <cmath>
 #include <cstdio>
@@ -20,7 +19,7 @@
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/methods/FastMassSpring.hpp"
+#include "lab/methods/ImplicitStage.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/StiffSplit.hpp"
@@ -57,10 +56,6 @@ class Newton : public Method {
 };
 
 std::unique_ptr<Method> make(const std::string& name, int rounds) {
-  if (name == "fast-mass-spring")
-    return std::make_unique<FastMassSpring>(rounds);
-  if (name == "local-global")
-    return std::make_unique<FastMassSpring>(rounds, false);
   if (name == "xpbd") return std::make_unique<Xpbd>(rounds);
   if (name == "newton-gradients")
     return std::make_unique<Newton>(rounds, LinearSolver::gradients);
@@ -97,8 +92,7 @@ void compare(const Problem& p, double K) {
   const End motion = move(0.2, frame);
   Newton newton(0);
   const End step = end_by(newton);
-  for (const char* name : {"fast-mass-spring", "local-global", "xpbd",
-                           "newton-gradients", "newton-factor"})
+  for (const char* name : {"xpbd", "newton-gradients", "newton-factor"})
     for (int rounds : {1, 2, 5, 10, 20}) {
       const auto method = make(name, rounds);
       const End end = end_by(*method);
@@ -116,22 +110,20 @@ int main(int argc, char** argv) try {
   const bool mixed = argc == 5 && std::string("mixed") == argv[2];
   const double K = argc > 2 && !mixed ? std::atof(argv[2]) : 1;
   const int rounds = argc > 4 ? std::atoi(argv[4]) : 1;
-  if ((argc != 3 && argc != 5) || side < 2 || !(K > 0) || rounds < 0)
+  if ((argc != 3 && argc != 5) || side < 2 || !(K > 0) || rounds < 1)
     throw std::runtime_error("usage: bench_rounds SIDE K [METHOD ROUNDS]");
   const Problem p =
       mixed ? mixed_problem() : grid_problem("", "", 1, unsigned(side), K);
   if (argc == 3) return compare(p, K), 0;
   Start s(p);
-  // 0: the first step of the method as it is, with its factor.
-  const auto method =
-      rounds > 0 ? make(argv[3], rounds) : find_method(argv[3])->make();
+  const auto method = make(argv[3], rounds);
   const bool by_steps = std::string("verlet") == argv[3];
   const double dt =
       mixed ? 0.999 * split_springs(s.cloth, 1, s.constraint).inner_step() *
                   (by_steps ? 1 : rounds)
             : frame;
-  // The first step allocates, and leaves its force and its factor to the next.
-  if (rounds > 0) method->step(s.cloth, 0.2 - dt, dt, s.force, s.constraint);
+  // The first step allocates, and leaves its force to the next.
+  method->step(s.cloth, 0.2 - dt, dt, s.force, s.constraint);
   const long long before = method->work().products;
   measured(*method, s, dt, by_steps ? rounds : 1);
   std::printf("%lld\n", method->work().products - before);

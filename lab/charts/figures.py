@@ -15,6 +15,7 @@ import sys
 from typing import Any, Callable
 
 import decision
+import panels
 import peers
 from results import (ROOT, Run, Table, by_method, cheapest, cost_at, ns_a_node,
                      runs, tied)
@@ -34,6 +35,11 @@ def table(path: str) -> Table:
 
 
 # ---- What an expression may use
+
+def methods() -> int:
+    """How many methods there are."""
+    return len(panels.styles())
+
 
 def of(scene: str, method: str | None = None) -> list[Run]:
     """Runs of work_precision.csv; of peers.csv if scene is 'peers NAME'."""

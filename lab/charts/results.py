@@ -87,19 +87,17 @@ class Table:
 def solver_costs() -> Costs:
     """What methods spend on more than forces, in force evaluations, by the
     instructions that `make rounds-chart` counts: {method: (cost of a step over
-    its force evaluations, of an inner step, once)}; and for Newton's methods
+    its force evaluations, of an inner step)}; and for Newton's methods
     that of a linear system, of a product with its matrix and of its factor."""
     lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
     each = {line.split(",")[0]: int(line.split(",")[3]) for line in lines
             if not line.startswith("#")}
     text = (ROOT / RATIOS).read_text()
-    factor = float(match("# the factor of .*: (.*)", text)[1])
-    costs = {m: (float(cost) / each[m], 0., 0. if m == "xpbd" else factor)
-             for m, cost in re.findall(
-                 r"# a step at verlet's limit ([\w-]+): ([\d.]+)", text)}
+    costs = {m: (float(cost) / each[m], 0.) for m, cost in re.findall(
+        r"# a step at verlet's limit ([\w-]+): ([\d.]+)", text)}
     name, step, inner = match(
         r"# ([\w-]+) on mixed: (.*) a step, (.*) an inner step", text).groups()
-    costs[name] = (float(step), float(inner), 0)
+    costs[name] = float(step), float(inner)
     (system, product), (by_factor, _) = (
         map(float, match(f"# 25 x 25 newton-{by}: .* once, (.*) a round, "
                              "(.*) a product", text).groups())
@@ -131,8 +129,8 @@ class Run:
         """Counted, in force evaluations. What a run does besides counts
         by its instructions."""
         if self.method in SOLVERS:
-            each, inner, once = SOLVERS[self.method]
-            return self.evaluations * each + self.inner * inner + once
+            each, inner = SOLVERS[self.method]
+            return self.evaluations * each + self.inner * inner
         return self.evaluations + sum(
             n * cost for n, cost in zip(self.solves, NEWTON))
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "lab/methods/Costs.hpp"
-#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/MollifiedImpulse.hpp"
 #include "lab/methods/RungeKutta.hpp"
@@ -23,8 +22,7 @@ constexpr std::array lines = {
     entry_of<Pefrl>(),         entry_of<Srkn11b>(),
     entry_of<Rk4>(),           entry_of<Rkn64>(),
     entry_of<ImplicitEuler>(), entry_of<ImplicitMidpoint>(),
-    entry_of<TrBdf2>(),        entry_of<FastMassSpring>(),
-    entry_of<Xpbd>()};
+    entry_of<TrBdf2>(),        entry_of<Xpbd>()};
 
 /** The line of @a M. It does not compile if there is none. */
 template <typename M>

@@ -213,8 +213,7 @@ void list_methods() {
   }
   std::puts(
       "\nto look right at 60 frames a second, take verlet while a frame takes "
-      "it less\nwork, else fast-mass-spring on soft cloth, implicit-euler on "
-      "stiff, xpbd on\nnearly rigid cloth");
+      "it less\nwork, else implicit-euler, or xpbd on nearly rigid cloth");
 }
 
 /** A run has a tolerance: set the method and the first steps by which to keep

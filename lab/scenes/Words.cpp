@@ -318,7 +318,8 @@ constexpr struct {
                    {"crank-nicolson", "implicit-midpoint", false},
                    {"bdf2", "tr-bdf2", false},
                    {"generalized-alpha", "tr-bdf2", false},
-                   {"projective-dynamics", "fast-mass-spring", false},
+                   {"projective-dynamics", "implicit-euler", false},
+                   {"fast-mass-spring", "implicit-euler", false},
                    {"pbd", "xpbd", false}};
 }  // namespace
 
