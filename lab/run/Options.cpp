@@ -456,6 +456,7 @@ int parse(int argc, char** argv, Options& o) {
   o.keeps_method = app.count("--method") > 0;
   o.keeps_step = app.count("--dt") > 0 && o.model.step.fixed();
   o.model.step.tolerance = kept_tolerance;
+  if (!given("tolerance")) o.unnamed = {"tolerance"};
   if (given("tolerance") && !o.asks_advice()) {
     if (o.model.percent)
       throw SceneError("tolerance",
@@ -463,6 +464,7 @@ int parse(int argc, char** argv, Options& o) {
                            "%, which needs --advise, --assess or --auto: "
                            "expected an error of the positions [m]");
     control_error(o, given);
+    if (o.chooses_method) o.unnamed = {"method", "dt"};
     if (app.count("--tolerance") > 0 && !o.bounds_error && !o.quiet)
       std::cerr << "cloth: warning: --tolerance has no effect on "
                 << o.model.method->info.name
@@ -472,7 +474,7 @@ int parse(int argc, char** argv, Options& o) {
   check(o);
   check_has_cloth(o.model);
   if (!dump) return -1;
-  std::cout << to_scene_file(o.model);
+  std::cout << to_scene_file(o.model, o.unnamed);
   return 0;
 }
 
