@@ -156,15 +156,22 @@ void check(Options& o) {
                      "the scene of a checkpoint is fixed");
   if (!o.json.empty() && !o.asks_advice())
     throw SceneError("json", "needs --advise, --assess or --auto");
-  if (!read_changes(o.model.at).empty())
-    for (const auto& [option, given] :
-         {std::pair("restart", !o.restart.empty()),
-          std::pair("checkpoint", !o.checkpoint.empty()),
-          std::pair("advise", o.asks_advice()),
-          std::pair("tolerance", o.bounds_error)})
+  const auto changes = read_changes(o.model.at);
+  if (!changes.empty())
+    for (const auto& [option, given] : {std::pair("advise", o.asks_advice()),
+                                        std::pair("tolerance", o.bounds_error)})
       if (given)
         throw SceneError("at",
                          std::string("cannot be combined with --") + option);
+  for (const Change& c : changes) {
+    const std::string word = c.request.substr(0, c.request.find(' '));
+    if (!(o.checkpoint + o.restart).empty() &&
+        !std::ranges::count(Live::archived, word))
+      throw SceneError("at", "has " + word +
+                                 ", which --checkpoint and --restart do not "
+                                 "keep: expected cut, drag, gravity, method, "
+                                 "stiffness or unpin");
+  }
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
         "window",
