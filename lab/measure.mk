@@ -1,7 +1,7 @@
 # What measures, draws and searches: make help-lab. Results lie in the folder
 # results of their room; a quick run draws in $(B)/charts.
 
-.PHONY: adviser-suite charts figures fuzz grids \
+.PHONY: adviser-suite charts crossings figures fuzz grids \
         long-runs method-costs orders peers-chart peers-deps pictures \
         rounds-chart speed stability stability-soak try
 
@@ -17,6 +17,8 @@ help-lab:
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
 	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
+	@echo 'make crossings          drawn scenes against an independent oracle;'
+	@echo '                        N=600 SEED=7 PROMISE=healthy FIELD=wind'
 	@echo 'make long-runs          averages over 60 s, past what can be predicted'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
@@ -34,6 +36,11 @@ help-lab:
 
 sub  = $(MAKE) --no-print-directory
 draw = python3 lab/charts/draw.py
+
+# Scenes drawn from the table of fields keep what a run promises.
+crossings: $(B)/cloth
+	@/usr/bin/python3 tests/crossings/crossings.py $< $(N:%=--scenes %) $(SEED:%=--seed %) \
+	  $(PROMISE:%=--promise %) $(FIELD:%=--field %)
 
 # All charts, and the figures of the text, from the CSV files as they are.
 figures:

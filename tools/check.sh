@@ -172,8 +172,19 @@ of_charts() {
   step drawn       drawn
   step graphs      in_folder . graphs
 }
-of_readme() { step readme tools/check_readme.sh; }
+of_readme() {
+  step readme      tools/check_readme.sh
+  step crossings   crossings 60
+}
 build_tests() { in_folder . units work_precision; }
+
+# Scenes drawn by the commit keep what a run promises.
+crossings() {  # SCENES
+  /usr/bin/python3 -c 'import numpy, scipy' 2>/dev/null ||
+    { echo "skipped: crossings: make python-deps"; return 0; }
+  /usr/bin/python3 tests/crossings/crossings.py build/check/cloth \
+    --scenes "$1" --seed "$turn_of"
+}
 
 # ---- check-full
 
@@ -310,6 +321,7 @@ turns() {
     FIRST=$((turn_of % 32))
   turn threads   "$long"  threads
   turn clang     "$long"  clang
+  turn crossings "$long"  crossings 600
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web
