@@ -19,9 +19,10 @@ static TestForce numbered_force() {
 template <typename... Fs>
 static auto combined(Fs&... forces) {
   return made_of_list<ForceParent>(
-      []<typename List>(List && list) requires requires {
-        ::CombinedForces(std::forward<List>(list));
-      } { return ::CombinedForces(std::forward<List>(list)); },
+      []<typename List>(
+          List&& list) -> decltype(::CombinedForces(std::forward<List>(list))) {
+        return ::CombinedForces(std::forward<List>(list));
+      },
       forces...);
 }
 
@@ -35,9 +36,9 @@ static void compare_combined(const char* answered, Cloth& g, Fs&... forces) {
   auto all = combined(forces...);
   if constexpr (!Present<decltype(all)> && !hidden<Fs...>)
     fail(
-        "a class CombinedForces, made from a std::vector of pointers to the "
-        "parent class of the forces",
-        "none");
+        "a class CombinedForces that is made from a std::vector of pointers to "
+        "the parent class of the forces",
+        "none, or one that is made from something else");
   else
     for (int i = 0; i < int(g.num_nodes()); ++i)
       for (double t : {0., 2.}) {

@@ -33,9 +33,10 @@ static auto constraints_of(Cs&&... cs) {
     return ::CombinedConstraints(std::forward<Cs>(cs)...);
   else
     return made_of_list<ConstraintParent>(
-        []<typename List>(List && list) requires requires {
-          ::CombinedConstraints(std::forward<List>(list));
-        } { return ::CombinedConstraints(std::forward<List>(list)); },
+        []<typename List>(List&& list) -> decltype(::CombinedConstraints(
+                                           std::forward<List>(list))) {
+          return ::CombinedConstraints(std::forward<List>(list));
+        },
         kept(cs)...);
 }
 template <typename All>
@@ -68,7 +69,7 @@ static C part() {
 
 /** Apply @a all, and compare with the first @a how_many parts. */
 template <typename All>
-static void compare_combined(All all, const Bodies& b, int how_many) {
+static void compare_combined(All& all, const Bodies& b, int how_many) {
   const double t = 2;
   Cloth g;
   fill(g, b);
