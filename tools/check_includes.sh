@@ -35,10 +35,12 @@ tools      :
 course     : tools
 lab/advice :
 lab/bench  :
+lab/scenes :
 lab/charts : lab/advice
 lab/try    : course lab/charts
 lab/page   : course tools
 tests      : course lab/try
+tests/crossings : lab/scenes lab/charts
 docs/site  : course tools
 '
 # A program in the root may draw, and a test; of all else only these:

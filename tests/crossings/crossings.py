@@ -22,7 +22,6 @@ from oracle import Chaos, Scene
 from promises import PROMISES, Broken, Case
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
 
 
 def broken(cloth: str, folder: pathlib.Path, scene: Scene,
@@ -143,7 +142,7 @@ def main() -> None:
     parser.add_argument("--all", action="store_true", help="show the known")
     a = parser.parse_args()
     cloth = str(pathlib.Path(a.cloth).resolve())
-    missing = set(scenes.table_of_fields(ROOT)) ^ set(scenes.FIELDS)
+    missing = set(scenes.table_of_fields()) ^ set(scenes.FIELDS)
     if missing:
         sys.exit(f"{HERE}/scenes.py:1: no way to draw, or no field: {missing}")
     rng = np.random.default_rng(a.seed)

@@ -12,9 +12,10 @@ import numpy as np
 import oracle
 from oracle import Scene
 
-METHODS = ["verlet", "symplectic-euler", "rk4", "pefrl", "srkn11b", "rkn64",
-           "implicit-euler", "implicit-midpoint", "tr-bdf2", "xpbd",
-           "fast-mass-spring", "mollified-impulse", "forward-euler"]
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+METHODS = [a.split(",")[0] for a in (
+    ROOT / "lab/charts/methods.csv").read_text().splitlines() if a[:1] != "#"]
+METHODS = [m for m in METHODS if m != "method"]
 MESHES = ("sheet", "net", "nodes")
 # Dimensions of what is drawn: the powers of length, time and mass.
 UNITS = {"at": (1, 0, 0), "u": (1, 0, 0), "v": (1, 0, 0), "from": (1, 0, 0),
@@ -28,9 +29,9 @@ UNITS = {"at": (1, 0, 0), "u": (1, 0, 0), "v": (1, 0, 0), "from": (1, 0, 0),
          "points": (1, 0, 0), "velocities": (1, -1, 0), "masses": (0, 0, 1)}
 
 
-def table_of_fields(root: pathlib.Path) -> list[str]:
+def table_of_fields() -> list[str]:
     """The names in the table of fields, in its order."""
-    text = (root / "lab/scenes/Fields.cpp").read_text()
+    text = (ROOT / "lab/scenes/Fields.cpp").read_text()
     table = text[text.index("return {"):text.index("// ---")]
     return re.findall(r'\{"([a-z-]+)",\s+(?:Role::)?\w+,', table)
 
@@ -239,9 +240,8 @@ class Draw:
     # ------------------------------------------------------ Step and question
 
     def method(self) -> None:
-        weights = np.array([5, 3, 2, 2, 2, 1, 1, 1, 1, 1, 1, 1, .3])
-        self.s["method"] = METHODS[self.rng.choice(
-            len(METHODS), p=weights / weights.sum())]
+        often = ["verlet"] * 5 + ["symplectic-euler"] * 3
+        self.s["method"] = self.one_of(METHODS + often)
 
     def t_end(self) -> None:
         """With the step: shares of the limit from 0.02 to 3."""
