@@ -117,7 +117,8 @@ void Stepper::hand_changed() {
 void Stepper::start_control() {
   control_.reset();
   if (failure_) return;
-  if (!step_.fixed() || follows_drag_ || watch_) start_drag();
+  const bool has_wind = system_.wind != Point();  // it gives energy: Guard
+  if (!step_.fixed() || follows_drag_ || watch_ || has_wind) start_drag();
   if (step_.fixed()) return;
   const double longest = limits_.mild(entry_, drag_, clock_.dt, step_.gain);
   if (longest < clock_.dt) clock_.set_dt(longest);
