@@ -3,7 +3,7 @@
 
 .PHONY: adviser-suite charts crossings figures fuzz grids \
         long-runs method-costs orders peers-chart peers-deps pictures \
-        rounds-chart speed stability stability-soak try
+        speed stability stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -23,7 +23,6 @@ help-lab:
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
-	@echo 'make rounds-chart       rounds of implicit steps; needs valgrind'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
 	@echo 'make peers-deps peers-chart   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
@@ -126,11 +125,6 @@ measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
   $$($(CXX) --version | head -n 1), commit \
   $$(git diff --quiet HEAD -- . ':!*/results/*' || printf 'after ')$$(git \
   describe --always)
-rounds-chart: bench_rounds
-	@{ echo "# $(measured_on)" && lab/bench/rounds.py $(B)/bench_rounds; } \
-	  > $(B)/rounds.csv
-	@mv $(B)/rounds.csv lab/bench/results/rounds.csv
-	@$(draw) decision
 
 # Other libraries beside ours: lab/bench/peers/README.md
 peers := lab/bench/peers

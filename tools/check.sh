@@ -239,7 +239,7 @@ threads() {
     "${three[@]}" build/check/clang/test_flat_flow --gtest_filter='*Parts*'
 }
 programs() {
-  in_folder . cloth work_precision stability_map bench bench_rounds examples
+  in_folder . cloth work_precision stability_map bench examples
 }
 # As by hand: `make test_NAME`, of three tests that are drawn by the commit.
 by_name() {

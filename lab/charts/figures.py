@@ -146,16 +146,6 @@ def advice(which: str) -> float:
     return suite.rates(table("advice/results/adviser.csv").rows)[which]
 
 
-def round_of(nodes: str, K: str, method: str, rounds: int,
-             what: str = "work") -> float:
-    """A row of rounds.csv: work [force evaluations], or a distance over the
-    way that the cloth moves in the step [%]."""
-    row = table("bench/results/rounds.csv").where(
-        nodes=nodes, K=K, method=method, rounds=str(rounds))[0]
-    return (float(row[what]) if what == "work" else
-            100 * float(row[what]) / float(row["moved"]))
-
-
 def refined(what: str, column: str, k: int = -1) -> float:
     """A row of grid_refinement.csv."""
     return float(table("charts/results/grid_refinement.csv").where(
