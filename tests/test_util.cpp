@@ -35,17 +35,6 @@ TEST(Util, RandomNumbersLieWhereTheyShould) {
   EXPECT_EQ(CME212::random(3, 3), 3);
 }
 
-TEST(Util, ClockRuns) {
-  CME212::Clock clock;
-  CME212::sleep(0.01);
-  double first = clock.seconds();
-  EXPECT_GE(first, 0.01);
-  EXPECT_GE(clock.seconds(), first);
-  clock.start();
-  CME212::Clock older = clock;
-  EXPECT_GE(older.seconds(), 0);
-}
-
 TEST(Util, GetlineParsedSkipsBlankLinesAndComments) {
   std::istringstream file(
       "# nodes\n0 0 0\n\n   \n\t\n1\t2 3\r\n  # indented\n"
