@@ -14,9 +14,7 @@ import unittest.mock
 import child
 import constants
 import markers
-import mistakes
 import pages
-import promises
 import starter
 import submission
 import tasks
@@ -516,46 +514,6 @@ class Constants(unittest.TestCase):
             with self.assertRaisesRegex(tasks.TasksError,
                                         rf"\Acourse/tasks.toml:{said}.*\Z"):
                 constants.values(self.TEXT.replace(right, wrong, 1))
-
-
-class Child(unittest.TestCase):
-    def test_a_child_ends_with_all_that_it_started(self):
-        # The one that sleeps holds the pipe until it ends, too.
-        with self.assertRaisesRegex(
-                TimeoutError, "^sh -c 'sleep 1000 & wait': ended after 0.1 s, "
-                "the time limit of a test$"):
-            child.run(["sh", "-c", "sleep 1000 & wait"], 0.1,
-                      capture_output=True)
-
-
-class Promises(unittest.TestCase):
-    def test_clauses(self):
-        page = ("## What to write\nIt sorts. `f` returns 1.\n\n"
-                "| f | v becomes | to |\n|---|---|---|\n| `g` | 0 | h |\n"
-                "## Usual mistakes\nIs 0.")
-        self.assertEqual([*promises.of_page(page)], [
-            ("It sorts.", False), ("`f` returns 1.", True), ("`g`: 0", True),
-            ("`g`: h", False)])
-        code = "/** Adds.\n * @post a; b */ int f() {%s BEGIN SOLUTION x"
-        self.assertEqual([*promises.of_source(code % "")], [
-            ("Adds.", False), ("@post a;", True), ("b", True)])
-        self.assertEqual([*promises.of_source(code % " return 1;")], [])
-
-    def test_what_nothing_holds(self):
-        x = frozenset(["x"])
-        breaks = mistakes.Mistake("t", "m", x, breaks=("is 1",))
-        opens = mistakes.Mistake("t", "allowed: n", open=("is 1",))
-        with unittest.mock.patch.multiple(
-                promises, clauses=lambda: (("a.md", "f is 1", True),)):
-            for number, *entries in (
-                    (0, breaks), (0, opens), (1,), (1, breaks, opens),
-                    (1, breaks, mistakes.Mistake("t", "allowed: n")),
-                    (1, mistakes.Mistake("t", "m", breaks=("is 1",))),
-                    (2, mistakes.Mistake("t", "m", x, breaks=("is 2",)))):
-                with unittest.mock.patch.multiple(
-                        mistakes, tables=lambda: ["t"],
-                        read=lambda _, found=entries: found):
-                    self.assertEqual(len(promises.faults()), number)
 
 
 if __name__ == "__main__":
