@@ -66,6 +66,7 @@ step() {  # NAME COMMAND...
   bad=$(sed -nE 's/^\[  FAILED  \] ([0-9]+) tests?, .*/\1/p; s/.* passed, ([0-9]+) failed.*/\1/p' "$log" |
     tail -n 1)
   if [ "$ok" = 1 ]; then
+    good=${good:-$(sed -nE 's/^Ran ([0-9]+) tests? in .*/\1/p' "$log" | tail -n 1)}
     good=${good:-1} bad=0
     printf 'ok    %-22s %4d tests %4d s\n' "$name" "$good" $((SECONDS - from))
     sed -n 's/^skipped: /      skipped: /p' "$log"

@@ -206,7 +206,6 @@ class Tasks(unittest.TestCase):
         for old, new, line, words in (
                 ("points = 4", "points = four", 12, "at line 12"),
                 ("points = 4\n", "", 10, "'points' is missing"),
-                ("points = 4", 'points = "4"', 10, "not a whole number"),
                 ("points = 4", "points = true", 10, "not a whole number"),
                 ("points = 4", "points = -4", 10, "negative"),
                 ('says = "f() is 1."', 'says = ""', 10, "one line"),
@@ -216,9 +215,7 @@ class Tasks(unittest.TestCase):
                 ('hint = "Return', 'note = 1\nhint = "Return', 10,
                  "unknown key 'note'"),
                 ("3.1.f", "3.2.f", 10, "'3.2.f' is no id of a task"),
-                ("3.1.f", "3.1.f-g", 10, "is no id of a task"),
                 ("7.1.g\"]\ntitle", "3.1.f\"]\ntitle", 15, "at line 15"),
-                ('"7.1"', '"3.1"', 7, "at line 7"),
                 ('n."3.1"', 'n."3/1"', 3, "no id of a section"),
                 ('"cloth"', '"silk"', 7, "expected graph, cloth or step"),
                 ('"7.1.g_more"', '"../x"', 15, "names of files"),
@@ -517,9 +514,4 @@ class Constants(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    result = unittest.TextTestRunner(stream=sys.stdout).run(
-        unittest.defaultTestLoader.loadTestsFromModule(
-            sys.modules["__main__"]))
-    bad = len(result.failures) + len(result.errors)
-    print(f"{result.testsRun - bad} passed, {bad} failed")
-    sys.exit(bad != 0)
+    unittest.main()

@@ -4,7 +4,6 @@ python3 lab/charts/test_charts.py"""
 import math
 import random
 import re
-import sys
 import unittest
 from dataclasses import replace
 from itertools import chain, combinations
@@ -261,9 +260,4 @@ class Colors(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    result = unittest.TextTestRunner(stream=sys.stdout).run(
-        unittest.defaultTestLoader.loadTestsFromModule(
-            sys.modules["__main__"]))
-    bad = len(result.failures) + len(result.errors)
-    print(f"{result.testsRun - bad} passed, {bad} failed")
-    sys.exit(bad != 0)
+    unittest.main()
