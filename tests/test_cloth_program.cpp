@@ -355,8 +355,6 @@ TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
             "cloth: --methd is not an option: did you mean --method?\n");
   EXPECT_EQ(complaint("--t_end=3 " + grid0),
             "cloth: --t_end is not an option: did you mean --t-end?\n");
-  EXPECT_EQ(complaint("--no-such-option"),
-            "cloth: --no-such-option is not an option: see --help\n");
   EXPECT_EQ(
       complaint(grid0 + "--method verlt"),
       "cloth: --method is verlt, expected a name of --list-methods: did you "

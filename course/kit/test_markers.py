@@ -192,7 +192,6 @@ class Faults(unittest.TestCase):
         markers.check({"S.hpp": text}, free)  # nothing is asked
 
 
-
 class Tasks(unittest.TestCase):
     def test_what_is_read(self):
         self.assertEqual((COURSE.points, EXTRA.points), (5, 4))
@@ -206,10 +205,8 @@ class Tasks(unittest.TestCase):
         for old, new, line, words in (
                 ("points = 4", "points = four", 12, "at line 12"),
                 ("points = 4\n", "", 10, "'points' is missing"),
-                ("points = 4", "points = true", 10, "not a whole number"),
                 ("points = 4", "points = -4", 10, "negative"),
                 ('says = "f() is 1."', 'says = ""', 10, "one line"),
-                ('hint = "Return 1."', 'hint = "a\\nb"', 10, "one line"),
                 ('hint = "Return', 'hints = ["a", 1]\nhint = "Return', 10,
                  "a hint is not a text of one line"),
                 ('hint = "Return', 'note = 1\nhint = "Return', 10,
