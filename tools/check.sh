@@ -175,7 +175,7 @@ of_charts() {
 }
 of_readme() {
   step readme      tools/check_readme.sh
-  step crossings   crossings 60
+  step crossings   crossings 30
 }
 build_tests() { in_folder . units work_precision; }
 
@@ -322,7 +322,7 @@ turns() {
     FIRST=$((turn_of % 32))
   turn threads   "$long"  threads
   turn clang     "$long"  clang
-  turn crossings "$long"  crossings 600
+  turn crossings "$long"  crossings 100
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web

@@ -155,6 +155,7 @@ void Stepper::watch_energy(double t_end) {
 void Stepper::start_watch() {
   watch_.emplace(energy(), flow(), clock_.dt, guard_->floor(),
                  guard_->round_off(), entry_.info.ahead());
+  before_.watch = latest_.watch = watch_;
 }
 
 bool Stepper::run_to(double t_end, const std::function<void()>& after) {
@@ -330,6 +331,7 @@ void Stepper::keep_both() {
 void Stepper::keep(Snapshot& s) const {
   s.nodes.keep(system_.cloth);
   s.clock = clock_, s.flow = flow(), s.control = control_->state();
+  s.watch = watch_;
   s.version = arrays(system_.cloth).version();
 }
 
@@ -360,6 +362,7 @@ bool Stepper::take_back() {
     flow.removed += before_.control.last + flow.work - flow.removed -
                     flow.drag - energy().total();
   control_->take_back(before_.control, steps);
+  watch_ = before_.watch;
   clock_ = before_.clock;
   clock_.set_dt(control_->dt());
   go_on(clock_, flow);
@@ -458,6 +461,7 @@ void Stepper::archive(Archive& a) {
     bool whole =
         s->version == arrays(system_.cloth).version();  // nothing removed since
     a(s->nodes)(s->clock)(s->flow)(s->control)(whole);
+    if (s->watch) a(*s->watch);
     a.require(not_after(s->clock));
     if (a.loads())
       s->version = whole ? arrays(system_.cloth).version()

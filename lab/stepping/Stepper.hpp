@@ -221,6 +221,7 @@ class Stepper {
     StepClock clock;
     EnergyFlow flow;
     StepControl::State control;
+    std::optional<EnergyWatch> watch;  // it has seen none of a later state
     std::size_t version = 0;
   };
 

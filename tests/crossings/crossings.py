@@ -74,7 +74,8 @@ def known(rows: list[dict], scene: Scene, promise: str, kind: str) -> str:
     return next((row["known"] for row in rows if "known" in row and
                  row["promise"] == promise and row["kind"] == kind and
                  set(row.get("fields", [])) <= set(scene) and
-                 row.get("dt", "") in str(scene.get("dt"))), "")
+                 all(row.get(word, "") in str(scene.get(word))
+                     for word in ("dt", "method"))), "")
 
 
 def show(title: str, promise: str, case: Case, wrong: Broken) -> None:
