@@ -798,7 +798,7 @@ def without_webgl():
     with Browser(flags=("--disable-3d-apis",)) as b:
         b.open(address)
         b.wait("document.querySelector('#fallback img').naturalWidth > 0")
-        assert b.value("$('panel').offsetHeight") == 0
+        b.wait("$('panel').offsetHeight === 0")
         assert "WebGL" in b.value("$('fallback').innerText")
         assert not b.faults, b.faults
         b.screenshot(build / "page-fallback.png")

@@ -21,7 +21,7 @@ from oracle import Scene
 from promises import PROMISES, Broken, Case, broken
 
 HERE = pathlib.Path(__file__).resolve().parent
-# What no smaller scene leaves out.
+# No smaller scene leaves these out.
 KEEP = {"sheet", "net", "nodes", "points", "faces", "dt", "t-end", "method",
         "measure", "tolerance"}
 

@@ -20,7 +20,7 @@ G = 9.81
 LIMIT = {"symplectic-euler": 2, "verlet": 2, "rk4": 2.8284, "pefrl": 2.989,
          "srkn11b": 9.07, "forward-euler": 0}
 CONTACT = ("plane", "sphere", "tear", "tear-strain")
-# What a part has that does not say another, and how a part rests.
+# The usual words of parts, and how a part rests.
 USUAL: dict[str, Scene] = {
     "sheet": {"at": (0., 0., 0.), "u": (1., 0., 0.), "v": (0., 1., 0.)},
     "plane": {"at": (0., 0., -.75)}, "pin": {},
