@@ -242,14 +242,6 @@ threads() {
 programs() {
   in_folder . cloth work_precision stability_map bench examples
 }
-# As by hand: `make test_NAME`, of three tests that are drawn by the commit.
-by_name() {
-  local drawn
-  drawn=$(cd tests && printf '%s\n' test_*.cpp | grep -v test_cloth_ |
-    shuf -n 3 --random-source=<(yes $turn_of) | sed 's/\.cpp$//')
-  # shellcheck disable=SC2086  # a list of words
-  make --no-print-directory -j"$jobs" B=build/check/by_name UNITY= $drawn
-}
 # Does advice still do what it did? How often it is right is in
 # lab/advice/README.md, from more scenes.
 advice() {
@@ -330,7 +322,6 @@ turns() {
   turn pages     "$long"  tools/check_pages.sh
   turn advice    "$limit" advice
   turn arm       "$long"  arm
-  turn by_name   "$long"  by_name
   turn laptops   "$long"  tools/check_laptops.sh
   turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \
     python3 lab/try/test_try.py build/check/try
