@@ -314,7 +314,6 @@ turns() {
     FIRST=$((turn_of % 32))
   turn threads   "$long"  threads
   turn clang     "$long"  clang
-  turn crossings "$long"  crossings 100
   turn page      "$long"  page
   turn site      "$long"  site
   turn web       "$long"  web
