@@ -200,7 +200,7 @@ Answer pin_force(const Measured& now, const Measure& what) {
     throw SceneError("measure",
                      "is " + name_of(what) + ", where no pin holds a node");
   std::ranges::sort(ids);
-  ids.erase(std::ranges::unique(ids).begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   Point sum;
   for (unsigned id : ids)
     if (arrays(g).node_in_use(id))
