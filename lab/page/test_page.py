@@ -336,8 +336,11 @@ def tasks_are_answered_by_their_runs(b):
 def tasks_of_the_hand(b):
     opened(b)
     try_task(b, 2)
+    pause(b)
     x, y = b.place_of(624)
     b.mouse("mousePressed", x, y)
+    b.wait("page.hand.grabbed")
+    b.value("page.setPlaying(true)")
     for k in range(1, 9):
         b.mouse("mouseMoved", x + 20 * k, y + 20 * k)
     is_done(b, 2, "Done")
