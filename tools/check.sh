@@ -271,7 +271,8 @@ web() {
 # controls; pictures of it are in build/check.
 page() {
   ! skips_page || return 0
-  one_builds page page_positions && lab/page/test_page.py build/check
+  one_builds page page_positions &&
+    EVERY=5 FIRST=$((turn_of % 5)) lab/page/test_page.py build/check
 }
 # The module for Python, and the examples of its page.
 python_module() {
@@ -310,8 +311,8 @@ turn() {  # NAME LIMIT COMMAND...
 }
 # All that needs nothing of each other; the longest first.
 turns() {
-  turn kit       "$long"  make --no-print-directory kit-check EVERY=32 \
-    FIRST=$((turn_of % 32))
+  turn kit       "$long"  make --no-print-directory kit-check EVERY=64 \
+    FIRST=$((turn_of % 64))
   turn threads   "$long"  threads
   turn clang     "$long"  clang
   turn page      "$long"  page

@@ -1,6 +1,7 @@
 """A headless Chromium, driven by Selenium: needs chromium-driver and
 python3-selenium (tools/deps.sh browser)."""
 import base64
+import os
 import pathlib
 import sys
 import time
@@ -166,12 +167,16 @@ def run_tests(tests: Iterable[Callable[[Browser], object]],
               names: Sequence[str],
               engines: Iterable[type[Browser]] = (Browser,)) -> int:
     """Run tests, or those of these names, in each engine, with a line for
-    each. What a page complains of is a fault.  Returns how many failed."""
+    each; after the first engine only one in $EVERY, from number $FIRST on.
+    What a page complains of is a fault.  Returns how many failed."""
     count = failed = 0
-    for engine in engines:
+    every, turn = (int(os.environ.get(n, 1)) for n in ("EVERY", "FIRST"))
+    for place, engine in enumerate(engines):
         b: Browser | None = None
-        for run in tests:
+        for number, run in enumerate(tests):
             if names and run.__name__ not in names:
+                continue
+            if not names and place > 0 and (number - turn) % every:
                 continue
             name = f"{run.__name__} {engine.__name__}"
             start = time.monotonic()
