@@ -92,13 +92,11 @@ stability-soak:
 orders: test_orders
 	@$(B)/test_orders | grep -e '^|' -e FAILED
 
-# Cost of a step, in steps of Verlet: for --list-methods.
-costs := lab/methods/Costs.hpp
+# Cost of a step, in steps of Verlet: to the methods' cards.
 method-costs: bench_methods
-	@$(B)/bench_methods > $(B)/costs
-	@{ sed -e '/^inline/q' -e "s|^// .*|// $(measured_on)|" $(costs) && \
-	  cat $(B)/costs && printf '});\n\n}  // namespace lab\n'; } > $(B)/Costs.hpp
-	@clang-format -i $(B)/Costs.hpp && mv $(B)/Costs.hpp $(costs)
+	@$(B)/bench_methods > $(B)/costs.sed
+	@sed -i -f $(B)/costs.sed lab/methods/*.hpp
+	@sed -i "s|^  // .*, commit .*|  // $(measured_on)|" lab/methods/Method.hpp
 
 # ---- Advice: lab/advice/README.md, on ADVISED random scenes from seed FIRST.
 

@@ -46,25 +46,6 @@ const std::array<Course, 5>& courses() {
   return all;
 }
 
-/** dt omega of a method's longest step on each course: there the next term of
- * its error is small, and three decades lower round-off is. rk4 needs short
- * steps on linear springs, as their errors of
- * amplitude and phase are one order apart only; Newton's methods start at long
- * ones, as their tolerance adds up over many short ones. */
-const std::map<std::string, std::array<double, 5>> first_steps = {
-    {"forward-euler", {0.1, 0.1, 0.4, 0.1, 0.2}},
-    {"symplectic-euler", {0.5, 0.5, 1, 0.5, 1}},
-    {"verlet", {0.5, 0.5, 0.5, 0.5, 0.5}},
-    {"mollified-impulse", {0.5, 0.5, 0.5, 0.5, 0.5}},
-    {"pefrl", {1.2, 1.2, 1.2, 1.2, 1.2}},
-    {"srkn11b", {1.8, 2.5, 2.8, 1.8, 2}},
-    {"rk4", {0.09, 0.3, 0.8, 0.09, 0.3}},
-    {"rkn64", {1, 1, 1.15, 1, 1}},
-    {"implicit-euler", {0.2, 1, 2, 0.2, 0.8}},
-    {"implicit-midpoint", {0.35, 0.5, 2, 0.35, 0.7}},
-    {"tr-bdf2", {0.35, 0.5, 2, 0.35, 1}},
-    {"xpbd", {0.5, 1, 2, 0.5, 1}}};
-
 /** A method that makes exactly the steps that it is asked for, and solves its
  * linear systems so well that only the error of the step is seen. */
 std::unique_ptr<Method> make(const MethodEntry& m) {
@@ -161,7 +142,7 @@ TEST_P(Order, IsWhatTheMethodDeclares) {
   Start start(p);
   const double omega = omega_safe(start.cloth, start.force, start.constraint);
   const double first =
-      std::ceil(p.t_end * omega / first_steps.at(name)[column]);
+      std::ceil(p.t_end * omega / method.info.first_steps[column]);
   constexpr std::size_t count = 6;
   std::array<double, count> x, y;  // ln dt, ln error
   for (std::size_t k = 0; k < count; ++k) {

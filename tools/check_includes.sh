@@ -36,7 +36,8 @@ course     : tools
 lab/advice :
 lab/bench  :
 lab/scenes :
-lab/charts : lab/advice
+lab/methods :
+lab/charts : lab/advice lab/methods
 lab/try    : course lab/charts
 lab/page   : course tools
 tests      : course lab/try

@@ -16,7 +16,7 @@
 namespace lab {
 
 /** The cost of a step on a grid, in spring evaluations. That of linear solves
- * is from method_costs, so that comparisons do not depend on a clock. */
+ * is from the cards, so that comparisons do not depend on a clock. */
 class StepCosts {
  public:
   /** Measure the cloth of @a m.

@@ -1,8 +1,8 @@
 // The time of a step of each method over that of Verlet, on the assignment's
 // cloth of 25 x 25 nodes with diagonals and drag, up to t = 0.25 s. Steps are
 // at Verlet's limit and, for methods without a limit, ten times as long. The
-// least of seven runs, with all methods in turn. `make method-costs` writes the
-// output to lab/methods/Costs.hpp, which --list-methods prints.
+// least of seven runs, with all methods in turn. The output is a script of sed,
+// by which `make method-costs` writes the costs to the methods' cards.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -61,7 +61,9 @@ int main() {
       costs[std::size_t(&table::verlet - methods.data())].at_limit;
   for (std::size_t k = 0; k < methods.size(); ++k) {
     const auto& [one, ten] = costs[k];
-    std::printf("    {\"%s\", %.3g, %.3g},  //\n", methods[k].info.name.data(),
-                one / unit, ten == no_limit ? 0 : ten / unit);
+    std::printf("/name = \"%s\"/,/cost =/s/cost = .*/cost = {%.3g",
+                methods[k].info.name.data(), one / unit);
+    if (ten != no_limit) std::printf(", %.3g", ten / unit);
+    std::puts("},/");
   }
 }

@@ -39,10 +39,11 @@ def find_matplotlib() -> None:
 
 
 def styles() -> dict[str, tuple[str, str]]:
-    """{method: (color, family)} of methods.csv."""
-    lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
-    cells = [line.split(",") for line in lines if not line.startswith("#")]
-    return {c[0]: (c[1], c[2]) for c in cells}
+    """{method: (color, family)} of the methods' cards."""
+    cards = "".join(path.read_text() for path in sorted(
+        (ROOT / "lab/methods").glob("*.hpp")))
+    return {name: (color, family) for name, family, color in re.findall(
+        r'\.name = "(.+)",\s+\.family = "(.+)",\s+\.color = "(.+)"', cards)}
 
 
 @dataclass(frozen=True)

@@ -225,7 +225,7 @@ def seen(color, sight):
 
 
 class Colors(unittest.TestCase):
-    """Of methods.csv: distances in L*a*b*; 2 is just seen."""
+    """Of the methods' cards: distances in L*a*b*; 2 is just seen."""
     LOOK = panels.styles()
 
     def apart(self, one, other, sight):

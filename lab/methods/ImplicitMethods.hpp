@@ -46,13 +46,17 @@ class ImplicitEuler : public ImplicitMethod {
   // In addition to the force evaluation: about dt omega products with the
   // matrix, each as expensive as one.
   static constexpr MethodInfo info = {
-      "implicit-euler",
-      1,
-      1,
-      no_limit,
-      "Baraff, Witkin 1998",
-      "stiff cloth that comes to rest, at any dt",
-      "accurate motion: it damps as a drag of dt omega^2 would"};
+      .name = "implicit-euler",
+      .family = "implicit",
+      .color = "#5A2D0C",
+      .order = 1,
+      .sweeps = 1,
+      .limit = no_limit,
+      .cost = {43, 223},
+      .first_steps = {0.2, 1, 2, 0.2, 0.8},
+      .source = "Baraff, Witkin 1998",
+      .good_for = "stiff cloth that comes to rest, at any dt",
+      .fails_when = "accurate motion: it damps as a drag of dt omega^2 would"};
 
   using ImplicitMethod::ImplicitMethod;
   ImplicitEuler() : ImplicitMethod(1e-8) {}
@@ -72,13 +76,17 @@ class ImplicitMidpoint : public ImplicitMethod {
   // Each iteration takes about dt omega products with the matrix, each as
   // expensive as one evaluation.
   static constexpr MethodInfo info = {
-      "implicit-midpoint",
-      2,
-      2,
-      no_limit,
-      "Hairer, Lubich, Wanner 2006, II.1.3",
-      "stiff springs that oscillate without loss, as in a chain",
-      "buckling cloth at large dt: nothing damps the fast waves"};
+      .name = "implicit-midpoint",
+      .family = "implicit",
+      .color = "#D1495B",
+      .order = 2,
+      .sweeps = 2,
+      .limit = no_limit,
+      .cost = {79.1, 231},
+      .first_steps = {0.35, 0.5, 2, 0.35, 0.7},
+      .source = "Hairer, Lubich, Wanner 2006, II.1.3",
+      .good_for = "stiff springs that oscillate without loss, as in a chain",
+      .fails_when = "buckling cloth at large dt: nothing damps the fast waves"};
 
   using ImplicitMethod::ImplicitMethod;
   ImplicitMidpoint() : ImplicitMethod(1e-9) {}
@@ -98,13 +106,17 @@ class TrBdf2 : public ImplicitMethod {
   // On a cloth 6. In addition, each stage takes products with the matrix as in
   // ImplicitMidpoint; at large steps about a quarter of their number.
   static constexpr MethodInfo info = {
-      "tr-bdf2",
-      2,
-      5,
-      no_limit,
-      "Bank et al. 1985",
-      "stiff cloth that moves on large scales, at large dt",
-      "energy that must not be lost; steps near verlet's limit"};
+      .name = "tr-bdf2",
+      .family = "implicit",
+      .color = "#882255",
+      .order = 2,
+      .sweeps = 5,
+      .limit = no_limit,
+      .cost = {71.8, 134},
+      .first_steps = {0.35, 0.5, 2, 0.35, 1},
+      .source = "Bank et al. 1985",
+      .good_for = "stiff cloth that moves on large scales, at large dt",
+      .fails_when = "energy that must not be lost; steps near verlet's limit"};
 
   using ImplicitMethod::ImplicitMethod;
   /** Stages are solved to a tenth of the local error. That raises the error of

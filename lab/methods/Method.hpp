@@ -3,6 +3,7 @@
  * Method: a step in time from t to t + dt, and the properties that each method
  * declares. The order within a step: positions, constraints, forces,
  * velocities. */
+#include <array>
 #include <concepts>
 #include <limits>
 #include <memory>
@@ -16,17 +17,33 @@
 
 namespace lab {
 
-/** The properties that a method declares; the tests measure them. */
+/** The card of a method: all that programs, charts and pages say of it. The
+ * tests measure its numbers. Python reads it as text. */
 struct MethodInfo {
   std::string_view name;
-  int order;     ///< error ~ dt^order
-  int sweeps;    ///< force evaluations a step, without linear solves
-  double limit;  ///< stable while dt omega < limit, without drag
-  const char* source;
-  const char* good_for;
-  const char* fails_when;
+  /** Its dash in charts: splitting solid, runge-kutta dashed, implicit dashed
+   * and dotted. Colors of one family differ for the color-blind, too; all
+   * differ in normal sight, and stand out on white by 3 to 1. */
+  const char *family, *color;
+  int order;               ///< error ~ dt^order
+  int sweeps;              ///< force evaluations a step, without linear solves
+  double limit;            ///< stable while dt omega < limit, without drag
   bool adaptive = false;   ///< makes inner steps, so dt may be of any length
   bool multirate = false;  ///< limit is that of soft_stiffness()
+  /** The time of a step, in steps of Verlet: at 0.99 of Verlet's limit, and at
+   * 10 times the limit (of methods without one). `make method-costs` writes it,
+   * lab/bench/bench_methods.cpp says how it is measured. */
+  struct Cost {
+    double at_limit, at_ten = 0;
+  } cost;
+  // AMD EPYC, g++ (Debian 12.2.0-14+deb12u1) 12.2.0, commit 3c13c1b
+  /** dt omega of the longest step on each course of tests/test_orders.cpp:
+   * there the next term of the error is small, and three decades lower
+   * round-off is. rk4 needs short steps on linear springs, as its errors of
+   * amplitude and phase are one order apart only; Newton's methods start at
+   * long ones, as their tolerance adds up over many short ones. */
+  std::array<double, 5> first_steps = {0.5, 0.5, 0.5, 0.5, 0.5};
+  const char *source, *good_for, *fails_when;
   /** Explicit of order 1: its velocities are a step ahead of positions. */
   bool ahead() const { return order == 1 && std::isfinite(limit); }
 };

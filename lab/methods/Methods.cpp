@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "lab/methods/Costs.hpp"
 #include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/MollifiedImpulse.hpp"
 #include "lab/methods/RungeKutta.hpp"
@@ -28,13 +27,6 @@ constexpr std::array lines = {
 template <typename M>
 constexpr const MethodEntry& line = *std::ranges::find(
     lines, M::info.name, [](const MethodEntry& m) { return m.info.name; });
-
-/** Null of a method without measured costs. */
-const MethodCost* cost_of(const MethodInfo& info) {
-  const auto cost =
-      std::ranges::find(method_costs, info.name, &MethodCost::method);
-  return cost == method_costs.end() ? nullptr : &*cost;
-}
 
 }  // namespace
 
@@ -67,23 +59,20 @@ double work_of_step(const MethodInfo& method, double limits, double side) {
   // evaluations for each node along a side, with which Newton's iterations by
   // sparse factorizations are cheaper.
   constexpr double more_iterations = 0.6, of_factor = 10;
-  const MethodCost* cost = cost_of(method);
-  const bool solves = method.limit == no_limit || method.adaptive;
-  if (!solves || !cost) return method.sweeps;
+  const auto [at_limit, at_ten] = method.cost;
+  if (method.limit != no_limit && !method.adaptive) return method.sweeps;
   limits = std::max(1.0, limits);
   // Inner steps are about as long as Verlet's limit.
-  if (method.adaptive) return cost->at_limit * std::ceil(limits);
-  const double grows = cost->at_ten / cost->at_limit;
-  double by_step = cost->at_limit * std::pow(grows, std::log10(limits));
+  if (method.adaptive) return at_limit * std::ceil(limits);
+  double by_step = at_limit * std::pow(at_ten / at_limit, std::log10(limits));
   if (limits > 10)
     by_step =
-        cost->at_ten *
+        at_ten *
         (work_varies(method) ? std::pow(limits / 10, more_iterations) : 1);
   return std::min(by_step, of_factor * side);
 }
 bool work_varies(const MethodInfo& method) {
-  const MethodCost* cost = cost_of(method);
-  return cost && (method.adaptive || cost->at_ten > 1.1 * cost->at_limit);
+  return method.adaptive || method.cost.at_ten > 1.1 * method.cost.at_limit;
 }
 
 }  // namespace lab

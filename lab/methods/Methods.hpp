@@ -23,8 +23,8 @@ extern const MethodEntry &forward_euler, &symplectic_euler, &verlet,
 const MethodEntry* find_method(std::string_view name);
 
 /** The work of a step of @a limits times Verlet's stability limit, in force
- * evaluations; that of linear solves is from Costs.hpp, so that it depends on
- * no clock.  @param side nodes along a side of the cloth */
+ * evaluations; that of linear solves is the measured cost of its card, so that
+ * it depends on no clock.  @param side nodes along a side of the cloth */
 double work_of_step(const MethodInfo& method, double limits, double side);
 /** True if the work of a step depends on the motion: only a run tells it. */
 bool work_varies(const MethodInfo& method);

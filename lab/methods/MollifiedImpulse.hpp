@@ -44,15 +44,17 @@ class StiffPlaces;
 class MollifiedImpulse : public BatchMethod {
  public:
   static constexpr MethodInfo info = {
-      "mollified-impulse",
-      2,
-      1,
-      2,
-      "Garcia-Archilla et al. 1998",
-      "some stiff springs in a soft cloth: dt by the soft ones",
-      "fast motion near its limit; resonance in narrow windows",
-      false,
-      true};
+      .name = "mollified-impulse",
+      .family = "splitting",
+      .color = "#009E73",
+      .order = 2,
+      .sweeps = 1,
+      .limit = 2,
+      .multirate = true,
+      .cost = {0.996},
+      .source = "Garcia-Archilla et al. 1998",
+      .good_for = "some stiff springs in a soft cloth: dt by the soft ones",
+      .fails_when = "fast motion near its limit; resonance in narrow windows"};
   static constexpr auto* bounding = soft_stiffness;
 
   MollifiedImpulse();

@@ -99,13 +99,17 @@ class RungeKutta : public BatchMethod {
 /** Source: L. Euler, Institutionum calculi integralis I (1768). */
 struct ForwardEulerTableau {
   static constexpr MethodInfo info = {
-      "forward-euler",
-      1,
-      1,
-      0,
-      "Euler 1768",
-      "negative control",
-      "every spring without drag: its energy grows"};
+      .name = "forward-euler",
+      .family = "runge-kutta",
+      .color = "#888888",
+      .order = 1,
+      .sweeps = 1,
+      .limit = 0,
+      .cost = {1.34},
+      .first_steps = {0.1, 0.1, 0.4, 0.1, 0.2},
+      .source = "Euler 1768",
+      .good_for = "negative control",
+      .fails_when = "every spring without drag: its energy grows"};
   static constexpr std::array<double, 0> a = {};
   static constexpr std::array b = {1.0};
   static constexpr std::array c = {0.0};
@@ -116,13 +120,17 @@ using ForwardEuler = RungeKutta<ForwardEulerTableau>;
 /** Source: W. Kutta, Z. Math. Phys. 46 (1901) 435. */
 struct Rk4Tableau {
   static constexpr MethodInfo info = {
-      "rk4",
-      4,
-      4,
-      2.8284,
-      "Kutta 1901",
-      "textbook baseline",
-      "long runs: it loses (dt omega)^6/72 of the energy a step"};
+      .name = "rk4",
+      .family = "runge-kutta",
+      .color = "#1B5E20",
+      .order = 4,
+      .sweeps = 4,
+      .limit = 2.8284,
+      .cost = {3.78},
+      .first_steps = {0.09, 0.3, 0.8, 0.09, 0.3},
+      .source = "Kutta 1901",
+      .good_for = "textbook baseline",
+      .fails_when = "long runs: it loses (dt omega)^6/72 of the energy a step"};
   static constexpr std::array a = {0.5, 0.0, 0.5, 0.0, 0.0, 1.0};
   static constexpr std::array b = {1 / 6., 1 / 3., 1 / 3., 1 / 6.};
   static constexpr std::array c = {0.0, 0.5, 0.5, 1.0};
@@ -137,15 +145,20 @@ struct Rkn64Tableau {
   // Without drag an oscillation grows in each step, by 1e-7 at dt omega = 1 and
   // 2e-3 at 3: it is for error control.
   static constexpr MethodInfo info = {
-      "rkn64",
-      6,
-      5,
-      0,
-      "Dormand, El-Mikkawy, Prince 1987",
-      "smooth motion to a tolerance, from 1e-4 m down",
-      "contact, tearing, friction: it makes tiny steps there, of low order; "
-      "drag over mass that differs from node to node",
-      true};
+      .name = "rkn64",
+      .family = "runge-kutta",
+      .color = "#7B4FA3",
+      .order = 6,
+      .sweeps = 5,
+      .limit = 0,
+      .adaptive = true,
+      .cost = {6.23},
+      .first_steps = {1, 1, 1.15, 1, 1},
+      .source = "Dormand, El-Mikkawy, Prince 1987",
+      .good_for = "smooth motion to a tolerance, from 1e-4 m down",
+      .fails_when =
+          "contact, tearing, friction: it makes tiny steps there, of low "
+          "order; drag over mass that differs from node to node"};
   static constexpr std::array a = {
       1 / 200.,        -1 / 2200.,      1 / 22.,           637 / 6600.,
       -7 / 110.,       7 / 33.,         225437 / 1968750., -30073 / 281250.,

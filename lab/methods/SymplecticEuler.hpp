@@ -11,13 +11,18 @@ namespace lab {
  * a force like others, and force and constraint are called with t. */
 class SymplecticEuler : public BatchMethod {
  public:
-  static constexpr MethodInfo info = {"symplectic-euler",
-                                      1,
-                                      1,
-                                      2,
-                                      "the assignment",
-                                      "a first look; energy stays bounded",
-                                      "accuracy: verlet costs the same"};
+  static constexpr MethodInfo info = {
+      .name = "symplectic-euler",
+      .family = "splitting",
+      .color = "#000000",
+      .order = 1,
+      .sweeps = 1,
+      .limit = 2,
+      .cost = {0.967},
+      .first_steps = {0.5, 0.5, 1, 0.5, 1},
+      .source = "the assignment",
+      .good_for = "a first look; energy stays bounded",
+      .fails_when = "accuracy: verlet costs the same"};
 
   int steps(Cloth& g, const StepTimes& times, int count, const ForcePlan& force,
             const ConstraintPlan& constraint) override;

@@ -31,13 +31,17 @@ class Xpbd : public Method {
   // In addition to the force evaluation: one of the springs, to subtract them,
   // and n rounds, each as expensive as 3.5 to 4 evaluations.
   static constexpr MethodInfo info = {
-      "xpbd",
-      1,
-      1,
-      no_limit,
-      "Macklin et al. 2016, 2019",
-      "plausible motion; nearly rigid springs, K to infinity",
-      "accuracy; few substeps: one round is no solution"};
+      .name = "xpbd",
+      .family = "implicit",
+      .color = "#00858A",
+      .order = 1,
+      .sweeps = 1,
+      .limit = no_limit,
+      .cost = {50.5, 50.9},
+      .first_steps = {0.5, 1, 2, 0.5, 1},
+      .source = "Macklin et al. 2016, 2019",
+      .good_for = "plausible motion; nearly rigid springs, K to infinity",
+      .fails_when = "accuracy; few substeps: one round is no solution"};
 
   /** @param substeps n > 0 in each step */
   explicit Xpbd(int substeps = 10) : substeps_(substeps) {

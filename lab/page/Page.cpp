@@ -95,9 +95,15 @@ const char* page_about() {
                   always_fails(*s));
   };
   const auto of_method = [](const MethodEntry& m) {
-    return object("name", m.info.name, "order", m.info.order, "sweeps",
-                  m.info.sweeps, "goodFor", m.info.good_for, "failsWhen",
-                  m.info.fails_when);
+    const char* group =
+        m.info.adaptive            ? "Error control: it chooses its inner steps"
+        : m.info.limit == no_limit ? "No limit: any step, at a higher cost"
+        : m.info.order > 2 ? "Explicit of high order: accurate while nothing "
+                             "collides"
+                           : "Explicit: cheap steps, up to a limit";
+    return object("name", m.info.name, "group", group, "order", m.info.order,
+                  "sweeps", m.info.sweeps, "goodFor", m.info.good_for,
+                  "failsWhen", m.info.fails_when);
   };
   return say(object("scenes", list(page_scenes(), of_scene), "methods",
                     list(methods, of_method)));

@@ -246,17 +246,6 @@ function change(name, value) {
   keepAddress(), showControls();
 }
 
-const groups = {
-  'Explicit: cheap steps, up to a limit': ['verlet', 'symplectic-euler',
-    'forward-euler', 'rk4', 'mollified-impulse'],
-  'Explicit of high order: accurate while nothing collides': ['pefrl',
-    'srkn11b'],
-  'Error control: it chooses its inner steps': ['rkn64'],
-  'Implicit: any step, each solves a system': ['implicit-euler',
-    'implicit-midpoint', 'tr-bdf2'],
-  'Position-based, of games: any step, looks right': ['xpbd'],
-};
-
 function makeControls() {
   const {scenes, methods} = page.about;
   for (const fails of [false, true]) {
@@ -268,10 +257,10 @@ function makeControls() {
   }
   for (const name of ['method', ...rivalNames]) {
     if (name !== 'method') $(name).append(new Option('nothing', ''));
-    for (const [label, names] of Object.entries(groups)) {
+    for (const label of new Set(methods.map(m => m.group))) {
       const group = document.createElement('optgroup');
       group.label = label;
-      group.append(...methods.filter(m => names.includes(m.name)).map(
+      group.append(...methods.filter(m => m.group === label).map(
         m => new Option(m.name)));
       $(name).append(group);
     }

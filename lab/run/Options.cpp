@@ -19,7 +19,6 @@
 #include "CME212/viewer/Image.hpp"
 #include "lab/fast/Lanes.hpp"
 #include "lab/live/Live.hpp"
-#include "lab/methods/Costs.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/scenes/Fields.hpp"
@@ -178,17 +177,14 @@ void check(Options& o) {
         "cannot be combined with --headless, --screenshot or --record");
 }
 
-/** As "42 / 249", or "1" of a method with a limit; "" if never measured. */
-std::string cost_of(std::string_view method) {
+/** As "42 / 249", or "1" of a method with a limit. */
+std::string text_of(const MethodInfo::Cost& cost) {
   using CME212::short_text;
   const auto rounded = [](double a) {
     return short_text(a < 10 ? std::round(10 * a) / 10 : std::round(a));
   };
-  for (const MethodCost& c : method_costs)
-    if (c.method == method)
-      return rounded(c.at_limit) +
-             (c.at_ten > 0 ? " / " + rounded(c.at_ten) : "");
-  return "";
+  return rounded(cost.at_limit) +
+         (cost.at_ten > 0 ? " / " + rounded(cost.at_ten) : "");
 }
 
 /** Print name, order, cost, limit and advice of every method. */
@@ -204,7 +200,7 @@ void list_methods() {
       "method", "order", "cost", "dt omega <", "good for");
   for (const MethodEntry& m : methods) {
     std::printf("%-18s %5d %9s ", m.info.name.data(), m.info.order,
-                cost_of(m.info.name).c_str());
+                text_of(m.info.cost).c_str());
     if (m.info.limit == no_limit)
       std::printf("%10s", "any");
     else
