@@ -392,11 +392,12 @@ COMMENT_OR_TEXT = re.compile(
     r"""|'(?:\\.|[^'\\\n])*(?:'|\\?\Z|(?=\n))""", re.DOTALL)
 
 
-def without_comments(text: str) -> str:
-    """C++ without comments and without broken lines; as many lines."""
+def without_comments(text: str, begins: str = "/") -> str:
+    """C++ without broken lines and without comments; '/"R': and strings; as
+    many lines."""
     def blank(match):
         found = match[0]
-        return " " + "\n" * found.count("\n") if found[0] == "/" else found
+        return " " + "\n" * found.count("\n") if found[0] in begins else found
     return COMMENT_OR_TEXT.sub(blank, joined(text))
 
 

@@ -106,24 +106,24 @@ def mirrored(half: Vector) -> Vector:
     return [*half, *half[-2::-1]]
 
 
-def coefficients(method: str) -> Vector:
-    """The decimal coefficients of a method, as they stand in methods.hpp."""
-    code = re.search(rf"\b{method}_(parts|step)\b.*?\n}}",
-                     (ROOT / "methods.hpp").read_text("utf-8"), re.S)
-    return [float(x) for x in re.findall(r"-?\d*\.\d{9,}",
-                                         code[0] if code else "")]
+def plain_splittings() -> dict[str, Table]:
+    """{name: table} of each NAME_parts in methods.hpp."""
+    found = {}
+    for name, body, kicks in re.findall(
+            r"array (\w+)_parts = \[\] {(.*?)\n}.*?\1_parts, (\w+)",
+            (ROOT / "methods.hpp").read_text("utf-8"), re.S):
+        body, numbers = body.replace("lambda", "lam"), dict[str, float]()
+        for one, value in re.findall(r"(\w+) = ([^,;]+)", body):
+            numbers[one] = eval(value, {}, numbers)
+        found[name] = alternate("kick" if kicks == "true" else "drift", eval(
+            "[" + body.split("{")[1].split("}")[0] + "]", {}, numbers))
+    return found
 
 
 def known() -> dict[str, Table]:
     """{name: table}"""
     theta = 1 / (2 - 2 ** (1 / 3))
     yoshida = mirrored([theta / 2, theta, (1 - theta) / 2, 1 - 2 * theta])
-    xi, lam, chi = coefficients("pefrl")
-    parts = coefficients("srkn11b")
-    b11, a11 = parts[:5], parts[5:]
-    b11.append(.5 - sum(b11))
-    a11.append(1 - 2 * sum(a11))
-    eleven = [x for pair in zip(b11, a11) for x in pair]
     third = [7 / 24, 2 / 3, 3 / 4, -2 / 3, -1 / 24, 1]
     dp: list[Vector] = [
         [], [1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9],
@@ -155,9 +155,7 @@ def known() -> dict[str, Table]:
         "Ruth's method of order 3": alternate("kick", third),
         "Yoshida 4": alternate("kick", yoshida),
         "Yoshida 4, positions first": alternate("drift", yoshida),
-        "PEFRL": alternate("drift", mirrored(
-            [xi, .5 - lam, chi, lam, 1 - 2 * (chi + xi)])),
-        "srkn11b": alternate("kick", mirrored(eleven)),
+        **plain_splittings(),
     }
 
 

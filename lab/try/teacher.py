@@ -27,7 +27,7 @@ ADVICE = {
     "the same order for the same work and keeps the energy.",
     "Yoshida 4": "Its long step back costs accuracy and stability: PEFRL takes "
     "one force more and has a hundredth of the error.",
-    "PEFRL": "Hard to beat for smooth motion; with contact every method falls "
+    "pefrl": "Hard to beat for smooth motion; with contact every method falls "
     "to order 2 or less, and Verlet is cheaper.",
     "srkn11b": "Hard to beat below 1e-8 m; for coarser errors use PEFRL or "
     "Verlet.",

@@ -190,7 +190,7 @@ DECLARED = [
     ("forward_euler_step", "forward Euler", 1, 1, 0, "forward-euler"),
     ("verlet_step", "Verlet", 2, 1, 2, "verlet"),
     ("yoshida4_step", "Yoshida 4", 4, 3, 1.573, ""),
-    ("pefrl_step", "PEFRL", 4, 4, 2.989, "pefrl"),
+    ("pefrl_step", "pefrl", 4, 4, 2.989, "pefrl"),
     ("srkn11b_step", "srkn11b", 6, 11, 9.074, "srkn11b"),
     ("rk4_step", "RK4", 4, 4, 2.828, "rk4"),
     ("implicit_euler_step", "", 1, 1, math.inf, ""),

@@ -48,12 +48,6 @@ def progress(text: str) -> None:
 
 # ---- The step's name
 
-def without_comments(text: str) -> str:
-    """The text with blanks for comments and strings, of the same length."""
-    pattern = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"", re.S)
-    return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
-
-
 def arguments(text: str, at: int) -> tuple[list[str], int] | None:
     """The arguments in the bracket at `at`, and where it closes; or None."""
     depth, start, found = 0, at + 1, []
@@ -73,7 +67,7 @@ def arguments(text: str, at: int) -> tuple[list[str], int] | None:
 def steps_in(text: str) -> dict[str, int]:
     """{name: number of arguments} of functions of the step's form. If two have
     one name, the one with a constraint counts."""
-    text = without_comments(text)
+    text = submission.without_comments(text, '/"R')
     found: dict[str, int] = {}
     for match in re.finditer(r"\bdouble\s+(\w+)\s*(\()", text):
         read = arguments(text, match.start(2))
@@ -244,7 +238,8 @@ class Workshop:
     def random(self) -> str:
         """FILE:LINE: STEP: NAME of the first random number in the file's
         text, or ''."""
-        text = without_comments(self.path.read_text("utf-8", "replace"))
+        text = submission.without_comments(
+            self.path.read_text("utf-8", "replace"), '/"R')
         found = re.search(r"\b(rand|rand_r|random|[ed]rand48|random_device|"
                           r"mt19937\w*|minstd_rand0?|default_random_engine)\b"
                           r"(?=\s*[\w({;])", text)
