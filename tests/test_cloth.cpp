@@ -1,5 +1,4 @@
-// mass_spring.hpp and Energy.hpp: what build_cloth() makes, spring formulas,
-// energies.
+// mass_spring.hpp and Energy.hpp: memory of a cloth, spring formulas, energies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,43 +11,10 @@ using namespace lab;
 
 namespace {
 
-void build_grid(Cloth& g, unsigned side, MeshSprings::Kind mesh,
-                double K = 100) {
-  build_cloth(g, grid_points(side), grid_quads(side), mesh, K);
-}
-
 void load_cloth(Cloth& g, const std::string& nodes, const std::string& quads,
                 MeshSprings::Kind mesh) {
   const auto points = load_points(nodes);
   build_cloth(g, points, load_quads(quads, points.size()), mesh);
-}
-
-// n x n nodes: 2 n (n - 1) sides, and 2 (n - 1)^2 diagonals.
-TEST(BuildCloth, GivesTheEdgesOfTheMesh) {
-  for (unsigned n : {2u, 5u, 25u}) {
-    Cloth plain, diagonals;
-    build_grid(plain, n, MeshSprings::plain);
-    build_grid(diagonals, n, MeshSprings::diagonals);
-    EXPECT_EQ(plain.num_nodes(), n * n);
-    EXPECT_EQ(plain.num_edges(), 2 * n * (n - 1));
-    EXPECT_EQ(diagonals.num_edges(), 2 * n * (n - 1) + 2 * (n - 1) * (n - 1));
-    diagonals.check_invariants();
-  }
-}
-
-TEST(BuildCloth, StartsAtRestWithTheMassOfOneKilogram) {
-  Cloth g;
-  build_grid(g, 5, MeshSprings::diagonals, 70);
-  for (Node n : g.nodes()) {
-    EXPECT_EQ(n.value().vel, Point());
-    EXPECT_EQ(n.value().mass, 1.0 / 25);
-  }
-  EXPECT_NEAR(total_mass(g), 1, 1e-15);
-  for (Edge e : g.edges()) {
-    EXPECT_EQ(e.value().K, 70);
-    EXPECT_EQ(e.value().L, e.length());
-  }
-  EXPECT_EQ(g.edge(0).value().L, 0.25);
 }
 
 #ifdef __SANITIZE_ADDRESS__
@@ -116,7 +82,7 @@ TEST(Energies, AreThoseOfTwoMassesOnASpring) {
 
 TEST(Energies, DoNotCountWhatWasRemoved) {
   Cloth g;
-  build_grid(g, 5, MeshSprings::diagonals);
+  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
   for (Node n : g.nodes()) {
     n.position() *= 1.1;
     n.position().z = 1;

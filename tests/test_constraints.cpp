@@ -1,8 +1,7 @@
-// The constraints of mass_spring.hpp: the post-condition of each, and that
-// twice is once.
+// What constraints of mass_spring.hpp promise beyond the assignment, to which
+// course/tests holds them.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 #include <typeinfo>
 #include <utility>
@@ -34,78 +33,12 @@ TEST_F(Scattered, TwiceIsOnce) {
   expect_twice_is_once(ZeroConstraint());
 }
 
-TEST_F(Scattered, PlaneStopsWhatIsBelowItAndNothingElse) {
-  Cloth before = g;
-  PlaneConstraint(-0.6)(g, 0);
-  int stopped = 0;
-  for (unsigned i = 0; i < g.num_nodes(); ++i) {
-    Node was = before.node(i), is = g.node(i);
-    bool below = was.position().z < -0.6;
-    stopped += below;
-    EXPECT_EQ(is.position().x, was.position().x);
-    EXPECT_EQ(is.position().y, was.position().y);
-    EXPECT_EQ(is.position().z, below ? -0.6 : was.position().z);
-    EXPECT_EQ(is.value().vel.x, was.value().vel.x);
-    EXPECT_EQ(is.value().vel.z, below ? 0 : was.value().vel.z);
-  }
-  EXPECT_GT(stopped, 5);
-  EXPECT_LT(stopped, 60);
-}
-
-TEST(PlaneConstraint, LeavesANodeThatLiesOnIt) {
-  Cloth g;
-  Node n = g.add_node(Point(0, 0, -0.75), {Point(0, 0, -1), 1});
-  PlaneConstraint()(g, 0);
-  EXPECT_EQ(n.value().vel, Point(0, 0, -1));
-  n.position().z = std::nextafter(-0.75, -1);
-  PlaneConstraint()(g, 0);
-  EXPECT_EQ(n.position().z, -0.75);
-  EXPECT_EQ(n.value().vel, Point());
-}
-
-TEST_F(Scattered, SphereMovesToTheNearestPointAndTakesTheNormalVelocity) {
-  Cloth before = g;
-  SphereConstraint()(g, 0);
-  int moved = 0;
-  for (unsigned i = 0; i < g.num_nodes(); ++i) {
-    Node was = before.node(i), is = g.node(i);
-    if (norm(was.position() - ball.center) >= ball.radius) {
-      EXPECT_EQ(is.position(), was.position());
-      EXPECT_EQ(is.value().vel, was.value().vel);
-      continue;
-    }
-    ++moved;
-    Point out = is.position() - ball.center;
-    EXPECT_NEAR(norm(out), ball.radius, 1e-16);
-    // The old place lies on the same ray, and only the normal part is gone.
-    EXPECT_NEAR(norm(cross(out, was.position() - ball.center)), 0, 1e-16);
-    EXPECT_GT(dot(out, was.position() - ball.center), 0);
-    EXPECT_NEAR(dot(is.value().vel, out), 0, 1e-16);
-    EXPECT_NEAR(norm(cross(is.value().vel - was.value().vel, out)), 0, 1e-15);
-  }
-  EXPECT_GT(moved, 5);
-  EXPECT_LT(moved, 60);
-}
-
 TEST(SphereConstraint, SendsANodeAtItsCenterToTheTop) {
   Cloth g;
   Node n = g.add_node(Point(0.5, 0.5, -0.5), {Point(1, 2, 3), 1});
   SphereConstraint()(g, 0);
   EXPECT_EQ(n.position(), Point(0.5, 0.5, -0.35));
   EXPECT_EQ(n.value().vel, Point(1, 2, 0));
-}
-
-TEST_F(Scattered, TearRemovesExactlyTheNodesInside) {
-  std::vector<Node> inside, outside;
-  for (Node n : g.nodes())
-    (norm(n.position() - ball.center) < ball.radius ? inside : outside)
-        .push_back(n);
-  ASSERT_GT(inside.size(), 5u);
-  TearConstraint()(g, 0);
-  g.check_invariants();
-  EXPECT_EQ(g.num_nodes(), outside.size());
-  for (Node n : inside) EXPECT_FALSE(g.has_node(n));
-  for (Node n : outside) EXPECT_TRUE(g.has_node(n));
 }
 
 TEST(TearConstraint, KeepsANodeOnTheSurfaceAndCanTakeAll) {
