@@ -1,6 +1,5 @@
 // Growth.hpp: what is measured on a sheet, and amplification() of an
-// oscillator, are what theory says. The program on top of it:
-// tools/test_sweep.sh.
+// oscillator, are what theory says.
 #include <gtest/gtest.h>
 
 #include <array>

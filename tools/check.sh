@@ -337,7 +337,6 @@ turns() {
   turn peers     "$limit" peers
   turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000
   turn submit    "$limit" tools/test_submit.sh
-  turn sweep     "$limit" tools/test_sweep.sh
   turn grids     "$limit" same_grids
 }
 one_half() { turns; }
