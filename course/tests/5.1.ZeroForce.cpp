@@ -6,15 +6,6 @@
 
 namespace kit {
 
-static Bodies moving_bodies() {
-  Bodies b;
-  b.add(Point(0.5, 0.25, 0), 0.25, Point(1, 2, 3));
-  b.add(Point(0.25, 1.5, 1), 2, Point(-3, 0, 4));
-  b.join(0, 1, given_K, 0.25);
-  b.vary();
-  return b;
-}
-
 /** A call of F as a Parent is the call of F.  @return the force on node 0 */
 template <typename Parent, typename F>
 static Point called_as(const char* name, F& force, Cloth& g) {

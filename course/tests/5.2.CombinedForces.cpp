@@ -52,13 +52,8 @@ static void compare_combined(const char* answered, Cloth& g, Fs&... forces) {
 
 template <typename Gravity, typename Springs>
 static void compare_sums() {
-  Bodies b;
-  b.add(Point(0.5, 0.25, 0), 0.25, Point(1, 2, 3));
-  b.add(Point(0.25, 1.5, 1), 2, Point(-3, 0, 4));
-  b.join(0, 1, given_K, 0.25);
-  b.vary();
   Cloth g;
-  fill(g, b);
+  fill(g, moving_bodies());
   constexpr bool own = inherits_from<Gravity, ForceParent>() &&
                        inherits_from<Springs, ForceParent>();
   // Some parents have no child of a test's.

@@ -39,15 +39,6 @@ struct OwnParts {
   static Gravity third() { return {}; }
 };
 
-static Bodies two_bodies() {
-  Bodies b;
-  b.add(Point(0.5, 0.25, 0), 0.25, Point(1, 2, 3));
-  b.add(Point(0.25, 1.5, 1), 2, Point(-3, 0, 4));
-  b.join(0, 1, given_K, 0.25);
-  b.vary();
-  return b;
-}
-
 /** Hold @a sum to the first @a how_many of the parts. */
 template <typename P, typename Sum>
 static void compare_sum(Sum& sum, const Bodies& b, int how_many,
@@ -126,7 +117,7 @@ static void combine_forces(const Bodies& b) {
  * class that is not known here. */
 template <typename Gravity, typename Springs>
 static void combine_forces_like() {
-  const Bodies b = two_bodies();
+  const Bodies b = moving_bodies();
   constexpr bool own =
       base_is_unknown<Gravity, FreeForce>() && Complete<Springs>;
   if constexpr (own || answers_all)

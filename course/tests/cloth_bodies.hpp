@@ -91,6 +91,16 @@ void fill(G& g, const Bodies& bodies) {
   set_springs(g, bodies);
 }
 
+/** Two that move, and a spring between them. */
+inline Bodies moving_bodies() {
+  Bodies b;
+  b.add(Point(0.5, 0.25, 0), 0.25, Point(1, 2, 3));
+  b.add(Point(0.25, 1.5, 1), 2, Point(-3, 0, 4));
+  b.join(0, 1, given_K, 0.25);
+  b.vary();
+  return b;
+}
+
 /** Answer where the nodes are, and how fast. */
 inline void answer_nodes(Cloth& g, int n) {
   for (int i = 0; i < n; ++i) {
