@@ -173,66 +173,8 @@ std::vector<Figure> figures() {
          [kind = kind](unsigned n) { return by_node(n, kind, springs_of); },
          true, 0, kind});
   }
-  add({"springs: virtual call a node", "springs: flat arrays",
-       [](unsigned n) {
-         std::shared_ptr<const ZeroForce> f =
-             std::make_shared<MassSpringForce>();
-         benchmark::DoNotOptimize(f);
-         return by_node(n, Kind::grid,
-                        [f](Node node) { return (*f)(node, 0); });
-       },
-       false});
-  add({"springs: adjacency alone", "springs: flat arrays",
-       [](unsigned n) {
-         return by_node(n, Kind::grid, [](Node node) {
-           Point f;
-           for (Edge e : node.edges()) f += e.node2().position();
-           return f;
-         });
-       },
-       false});
-  add({"springs: edge values alone", "springs: flat arrays",
-       [](unsigned n) {
-         return by_node(n, Kind::grid, [](Node node) {
-           Point f;
-           for (Edge e : node.edges()) f.x += e.value().K * e.value().L;
-           return f;
-         });
-       },
-       false});
   add({"springs: sweep", "springs: flat arrays", [](unsigned n) {
          return staging(n, {.t = 0, .kick = 0, .keep = true});
-       }});
-
-  // All edges, each once.
-  add({"edges: flat arrays", "", [](unsigned n) -> Make {
-         struct Ends {
-           unsigned i, j;
-         };
-         auto ends = std::make_shared<std::vector<Ends>>();
-         auto value = std::make_shared<std::vector<EdgeData>>();
-         for (Edge e : cloth(n, Kind::grid).edges()) {
-           ends->push_back({e.node1().id(), e.node2().id()});
-           value->push_back(e.value());
-         }
-         return [=, &x = flat(n, Kind::grid).x] {
-           double sum = 0;
-           for (std::size_t e = 0; e < ends->size(); ++e) {
-             const auto &a = x[(*ends)[e].i], &b = x[(*ends)[e].j];
-             const double ux = a.x - b.x, uy = a.y - b.y, uz = a.z - b.z;
-             sum += (*value)[e].K * (ux * ux + uy * uy + uz * uz);
-           }
-           benchmark::DoNotOptimize(sum);
-         };
-       }});
-  add({"edges: Edge", "edges: flat arrays", [](unsigned n) -> Make {
-         return [&g = cloth(n, Kind::grid)] {
-           double sum = 0;
-           for (Edge e : g.edges())
-             sum += e.value().K *
-                    normSq(e.node1().position() - e.node2().position());
-           benchmark::DoNotOptimize(sum);
-         };
        }});
 
   // The other parts of a step.
