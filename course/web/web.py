@@ -51,7 +51,6 @@ FROM_5_ON = ("GravityForce MassSpringForce make_combined_force PinConstraint "
              "PlaneConstraint SphereConstraint TearConstraint "
              "make_combined_constraints").split()
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-EMBED = re.compile(r"^\s{0,99}(?:#|%:)\s{0,99}embed\b", re.MULTILINE)
 
 
 def compiler() -> str:
@@ -106,10 +105,8 @@ def compiled(files: dict[str, bytes], *more: str) -> bytes | None:
                 (source / name).write_bytes(text)
             done = subprocess.run(words, cwd=source, text=True,
                                   stderr=subprocess.PIPE)
-            said, right = done.stderr.replace(f"{source}/", ""), out.exists()
-            refused = "it has an #embed" * any(
-                EMBED.search(COMMENT.sub(" ", text.decode("utf-8", "replace")))
-                for text in files.values())
+            said, right, refused = (
+                done.stderr.replace(f"{source}/", ""), out.exists(), "")
         if refused:
             raise BadInput(refused)
         print(said, end="", file=sys.stderr)
