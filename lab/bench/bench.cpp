@@ -137,14 +137,6 @@ std::vector<Figure> figures() {
            });
          };
        }});
-  add({"step: symp_euler_step(), forces", "step: flat arrays",
-       [](unsigned n) -> Make {
-         auto force = std::make_shared<CombinedForces>(
-             make_combined_force(GravityForce(), MassSpringForce()));
-         return [force, &g = cloth(n, Kind::grid)] {
-           symp_euler_step(g, 0, dt, *force);
-         };
-       }});
   add({"step: SymplecticEuler, one at a time", "step: SymplecticEuler",
        stepping<SymplecticEuler, 1>(Kind::grid)});
   add({"step: scene of the assignment", "step: SymplecticEuler",
@@ -188,17 +180,6 @@ std::vector<Figure> figures() {
          };
        },
        false});
-  auto constraint = [&](const char* name, auto of) {
-    add({std::string("part: ") + name, "step: SymplecticEuler",
-         [of](unsigned n) -> Make {
-           Cloth& g = cloth(n, Kind::grid);
-           return [c = ConstraintPlan(of(g)), &g] { c(g, 0); };
-         },
-         false});
-  };
-  constraint("floor", [](Cloth&) { return PlaneConstraint(); });
-  constraint("ball", [](Cloth&) { return SphereConstraint(); });
-  constraint("ball that tears", [](Cloth&) { return TearConstraint(); });
   // The check of a scene after every 32nd step.
   add({"part: guard", "step: Verlet",
        [](unsigned n) -> Make {
