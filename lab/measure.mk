@@ -95,8 +95,8 @@ orders: test_orders
 # Cost of a step, in steps of Verlet: to the methods' cards.
 method-costs: bench_methods
 	@$(B)/bench_methods > $(B)/costs.sed
-	@sed -i -f $(B)/costs.sed lab/methods/*.hpp
 	@sed -i "s|^  // .*, commit .*|  // $(measured_on)|" lab/methods/Method.hpp
+	@sed -i -f $(B)/costs.sed lab/methods/*.hpp
 
 # ---- Advice: lab/advice/README.md, on ADVISED random scenes from seed FIRST.
 
