@@ -266,20 +266,13 @@ TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
       "with G in (0, 1], the energy gain tolerated, as auto:0.02\n");
 }
 
-TEST_F(ClothProgram, RunsEveryMethodAndListsIt) {
+// test_cloth_restart runs each of them.
+TEST_F(ClothProgram, ListsEveryMethod) {
   Result list = run("--list-methods");
   EXPECT_EQ(list.status, 0);
   EXPECT_TRUE(has(list.out, "60 frames a second, take verlet"));
-  for (const MethodEntry& m : methods) {
-    EXPECT_TRUE(has(list.out, m.info.name));
-    std::string method = std::string(" --method ").append(m.info.name);
-    for (const char* name : {"problem1", "tear"}) {
-      Result r = run(stage(name) + grid0 +
-                     "--headless --t-end 0.1 --damping 0.04" + method);
-      EXPECT_EQ(r.status, 0) << method << r.err;
-      EXPECT_TRUE(has(r.out, ": 100 steps")) << method;
-    }
-  }
+  for (const MethodEntry& m : methods)
+    EXPECT_TRUE(has(list.out, "\n" + std::string(m.info.name) + ' '));
 }
 
 // Newton gives up on a cloth that buckles at a step far too large.
