@@ -47,33 +47,42 @@ inline std::string quoted(std::string_view word) {
   return shown + (word.size() > 24 ? "...'" : "'");
 }
 
-/** Call use(words, line number) for each line of @a text that is neither blank
- * nor a comment (#). Words are separated by blanks and tabs, lines by \n, \r
- * or both. @return the number of lines */
+/** Call use(words, line number) for each line of @a text that has words. They
+ * are separated by blanks and tabs, lines by \n, \r or both. A # begins a
+ * comment; a \ at the end of a line continues it.
+ * @return the number of lines */
 template <typename Use>
 std::size_t for_each_line(std::string_view text, Use use) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // UTF-8 mark
-  auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
-  auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
-  const char* at = text.data();
-  const char* const end = at + text.size();
+  const auto ends_line = [&](std::size_t k) {
+    return k == text.size() || text[k] == '\n' || text[k] == '\r';
+  };
+  const auto ends_word = [&](std::size_t k) {
+    return ends_line(k) || text[k] == ' ' || text[k] == '\t' ||
+           text[k] == '#' || (text[k] == '\\' && ends_line(k + 1));
+  };
+  const auto next_line = [&](std::size_t k) {
+    return k + (text.substr(k).starts_with("\r\n") ? 2 : k < text.size());
+  };
   std::vector<std::string_view> words;
-  std::size_t number = 0;
-  while (at != end) {
-    ++number;
+  std::size_t lines = 0;
+  for (std::size_t at = 0; at < text.size(); at = next_line(at)) {
+    const std::size_t number = ++lines;
     words.clear();
-    while (at != end && !ends_line(*at)) {
-      const char* first = at;
-      while (at != end && !is_blank(*at) && !ends_line(*at)) ++at;
-      if (at != first)
-        words.emplace_back(first, std::size_t(at - first));
+    while (!ends_line(at)) {
+      const std::size_t first = at;
+      while (!ends_word(at)) ++at;
+      if (at > first)
+        words.push_back(text.substr(first, at - first));
+      else if (text[at] == '\\')
+        at = next_line(at + 1), ++lines;
       else
-        ++at;
+        at = text[at] == '#' ? text.find_first_of("\r\n", at) : at + 1;
+      at = std::min(at, text.size());
     }
-    if (at != end) at += at[0] == '\r' && end - at > 1 && at[1] == '\n' ? 2 : 1;
-    if (!words.empty() && words[0][0] != '#') use(words, number);
+    if (!words.empty()) use(words, number);
   }
-  return number;
+  return lines;
 }
 
 /** std::from_chars() of a real by the C library: the same values and errors. */
@@ -123,27 +132,40 @@ T parse_number(std::string_view word, const char* kind) {
   return value;
 }
 
+/** Call @a use(words) for each line of @a text that has words; what it throws
+ * gets its line, and what @a expected() says then.
+ * @return the number of lines.  Throws InputError */
+template <typename Use, typename Expected>
+std::size_t each_line(std::string_view text, const std::string& file, Use use,
+                      Expected expected) {
+  return for_each_line(text, [&](auto& words, std::size_t line) {
+    try {
+      use(words);
+    } catch (const std::runtime_error& e) {
+      throw InputError(file, line, e.what() + (", expected " + expected()));
+    }
+  });
+}
+
 /** Call add(row) for each line of @a text: row is its N numbers of type T. If
  * @a add throws a std::runtime_error, it says what is wrong with the line. */
 template <typename T, std::size_t N, typename Add>
 void read_rows(std::string_view text, const std::string& file, const char* kind,
                const std::string& expected, Add add) {
   bool any = false;
-  std::size_t lines = for_each_line(text, [&](auto& words, std::size_t line) {
-    try {
-      std::array<T, N> row;
-      for (std::size_t k = 0; k < std::min(N, words.size()); ++k)
-        row[k] = parse_number<T>(words[k], kind);
-      if (words.size() != N)
-        throw std::runtime_error(std::to_string(words.size()) +
-                                 (words.size() == 1 ? " value" : " values") +
-                                 " in the line");
-      add(row);
-      any = true;
-    } catch (const std::runtime_error& e) {
-      throw InputError(file, line, e.what() + (", expected " + expected));
-    }
-  });
+  const auto use = [&](auto& words) {
+    std::array<T, N> row;
+    for (std::size_t k = 0; k < std::min(N, words.size()); ++k)
+      row[k] = parse_number<T>(words[k], kind);
+    if (words.size() != N)
+      throw std::runtime_error(std::to_string(words.size()) +
+                               (words.size() == 1 ? " value" : " values") +
+                               " in the line");
+    add(row);
+    any = true;
+  };
+  const std::size_t lines =
+      each_line(text, file, use, [&] { return expected; });
   if (!any)
     throw InputError(file, lines, "nothing in the file, expected " + expected);
 }
@@ -203,7 +225,8 @@ std::vector<std::array<unsigned, N>> parse_cells(std::string_view text,
   mesh_detail::read_rows<long long, N>(
       text, file, "a whole number",
       std::string(count[N]) + " different node indices from 0 to " +
-          std::to_string(num_points - 1),
+          std::to_string(num_points - 1) +
+          (N == 2 ? "; a .net file has K and L, too" : ""),
       [&cells, num_points](auto& row) {
         std::array<unsigned, N> cell;
         for (std::size_t k = 0; k < N; ++k) {

@@ -13,18 +13,30 @@
 #include "CME212/Mesh.hpp"
 #include "CME212/Util.hpp"
 
+/** "face" if one of @a quads is a triangle, else "quad". */
+inline const char* face_or_quad(std::span<const Quad> quads) {
+  const auto is_triangle = [](const Quad& q) { return q[1] == q[3]; };
+  return std::ranges::any_of(quads, is_triangle) ? "face" : "quad";
+}
+
+/** Does the side of @a q between corners 0 and @a a cross the opposite one? */
+inline bool crosses(std::span<const Point> points, const Quad& q, int a) {
+  const Point p = points[q[0]], r = points[q[a]], s = points[q[3 - a]],
+              t = points[q[3]];
+  // Are the ends of each line on both sides of the other?
+  const auto parts = [](const Point& i, const Point& j, const Point& k,
+                        const Point& l) {
+    return dot(cross(j - i, k - i), cross(j - i, l - i)) < 0;
+  };
+  return parts(p, r, s, t) && parts(s, t, p, r);
+}
+
 /** The number of @a quads whose corners are listed around, a b d c, as other
- * formats do: as Quad their sides would cross. Where corners 0 2 and 1 3 are
- * opposite, the area between these diagonals is the larger one. */
+ * formats do: as Quad, their sides 02 and 13 cross. */
 inline std::size_t num_around(std::span<const Point> points,
                               std::span<const Quad> quads) {
-  const auto area = [&](const Quad& q, int a, int b, int c, int d) {
-    return norm(
-        cross(points[q[a]] - points[q[b]], points[q[c]] - points[q[d]]));
-  };
-  return std::size_t(std::ranges::count_if(quads, [&](const Quad& q) {
-    return q[1] != q[3] && area(q, 0, 2, 1, 3) > 1.5 * area(q, 0, 3, 1, 2);
-  }));
+  return std::size_t(std::ranges::count_if(
+      quads, [&](const Quad& q) { return crosses(points, q, 2); }));
 }
 
 /** The positions in @a quads of those with the corners of an earlier one. */
@@ -40,25 +52,35 @@ inline std::vector<unsigned> repeated(std::span<const Quad> quads) {
   return again;
 }
 
-/** The pairs of points that lie at one place, to 1e-6 of the size of all: of
- * several there, each with the next one. */
-inline std::vector<std::array<unsigned, 2>> coincident(
-    std::span<const Point> points) {
-  const CME212::BoundingBox box(points);
-  const double unit = 1e-6 * box.diagonal();
-  std::vector<std::pair<std::array<double, 3>, unsigned>> cells;
-  cells.reserve(points.size());
-  for (unsigned i = 0; i < points.size(); ++i) {
-    auto& cell = cells.emplace_back(std::array<double, 3>(), i).first;
-    for (int k : {0, 1, 2})
-      cell[k] = unit > 0 ? std::round((points[i][k] - box.min()[k]) / unit) : 0;
-  }
+/** Of each point the first one that lies at its place, to 1e-6 of the size of
+ * all; a point that is such a first one has itself.  O(n log n) */
+inline std::vector<unsigned> first_at_place(std::span<const Point> points) {
+  const double near = 1e-6 * CME212::BoundingBox(points).diagonal(),
+               side = near > 0 ? 16 * near : 1;
+  using Cell = std::array<double, 3>;
+  const auto cell_of = [side](const Point& p) {
+    const Point cell = p / side;
+    return Cell{std::floor(cell.x), std::floor(cell.y), std::floor(cell.z)};
+  };
+  std::vector<std::pair<Cell, unsigned>> cells;
+  std::vector<unsigned> first;
+  for (const Point& p : points)
+    cells.emplace_back(cell_of(p), unsigned(cells.size()));
   std::ranges::sort(cells);
-  std::vector<std::array<unsigned, 2>> pairs;
-  for (std::size_t k = 1; k < cells.size(); ++k)
-    if (cells[k].first == cells[k - 1].first)
-      pairs.push_back({cells[k - 1].second, cells[k].second});
-  return pairs;
+  for (unsigned i = 0; i < points.size(); ++i) {
+    first.push_back(i);
+    for (unsigned k = 0; k < 8; ++k) {  // corners of a cube around the point
+      const Point sign(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+      const Cell cell = cell_of(points[i] + near * sign);
+      if (k > 0 && cell == cell_of(points[i] - Point(near))) continue;
+      for (auto c = std::ranges::lower_bound(cells, std::pair(cell, 0u));
+           c != cells.end() && c->first == cell && c->second < first[i]; ++c)
+        if (const unsigned j = c->second;
+            first[j] == j && norm(points[j] - points[i]) <= near)
+          first[i] = j;
+    }
+  }
+  return first;
 }
 
 /** The faults of a mesh, a sentence each.
@@ -69,23 +91,29 @@ inline std::vector<std::string> mesh_faults(
     std::span<const std::array<unsigned, 2>> springs = {}) {
   using CME212::count_of, std::to_string;
   std::vector<std::string> all;
+  const char* const face = face_or_quad(quads);
   const auto are = [](std::size_t n, const char* one, const char* more) {
     return n == 1 ? one : more;
   };
-  if (const auto n = num_around(points, quads); n > quads.size() / 2)
-    all.push_back(to_string(n) + " of " + count_of(quads.size(), "quad") +
-                  are(n, " lists", " list") +
-                  " the corners around, as a b d c: springs cross; list them "
-                  "as a b c d with the sides ab, ac, bd and cd");
+  const auto n = std::size_t(std::ranges::count_if(quads, [&](const Quad& q) {
+    return crosses(points, q, 1) || crosses(points, q, 2);
+  }));
+  if (n > quads.size() / 2)
+    all.push_back(to_string(n) + " of " + count_of(quads.size(), face) +
+                  are(n, " has", " have") +
+                  " sides that cross: .tets lists corners as a b c d with the "
+                  "sides ab, ac, bd and cd, other formats list them around");
   if (const auto again = repeated(quads); !again.empty())
     all.push_back(count_of(again.size(), "face") +
                   are(again.size(), " is", " are") + " listed twice, number " +
                   to_string(again[0]) + are(again.size(), "", " first") +
                   ": their area and mass count twice");
   // Points at one place, without those that a face or a spring joins.
-  auto pairs = coincident(points);
-  for (auto& [i, j] : pairs)
-    if (i > j) std::swap(i, j);
+  std::vector<std::array<unsigned, 2>> pairs;
+  for (unsigned i = 0; const unsigned first : first_at_place(points)) {
+    if (first < i) pairs.push_back({first, i});
+    ++i;
+  }
   std::ranges::sort(pairs);
   std::vector<char> used(points.size());
   const auto join = [&](unsigned i, unsigned j) {
@@ -109,13 +137,14 @@ inline std::vector<std::string> mesh_faults(
   const auto loose = std::size_t(std::ranges::count(used, 0));
   if (loose == 0) return all;
   const auto first = std::size_t(std::ranges::find(used, 0) - used.begin());
-  all.push_back(
-      to_string(loose) + " of " + count_of(used.size(), "node") +
-      are(loose, " lies", " lie") + " in no " +
-      (springs.empty() ? "quad" : "face or spring") + ", node " +
-      to_string(first) + are(loose, "", " first") + ": no spring holds " +
-      are(loose, "it", "them") + "; use nodes and quads of the same mesh" +
-      (loose == 1 && first == 0 ? ", and indices that start at 0, not at 1"
-                                : ""));
+  all.push_back(to_string(loose) + " of " + count_of(used.size(), "node") +
+                are(loose, " lies", " lie") + " in no " +
+                (springs.empty() ? face : "face or spring") + ", node " +
+                to_string(first) + are(loose, "", " first") +
+                ": no spring holds " + are(loose, "it", "them") +
+                "; use nodes and " + face + "s of the same mesh" +
+                (loose == 1 && first == 0
+                     ? ", and indices that start at 0, not at 1"
+                     : ""));
   return all;
 }

@@ -30,6 +30,19 @@ class ClothProgram : public ::testing::Test {
   Result run(const std::string& arguments) {
     return folder.run(CME212::program("cloth", "build/") + " " + arguments);
   }
+  /** run() that ends with status 0. */
+  Result success(const std::string& arguments) {
+    const Result r = run(arguments);
+    EXPECT_EQ(r.status, 0) << arguments << '\n' << r.err;
+    return r;
+  }
+  /** The words with which it refuses @a arguments. */
+  std::string refusal(const std::string& arguments) {
+    const Result r = run(arguments);
+    EXPECT_EQ(r.status, 2) << arguments;
+    EXPECT_EQ(r.out, "") << arguments;
+    return r.err;
+  }
   /** Start it, after commands @a before; what it says goes where run() has it.
    */
   CME212::Child start(const std::string& arguments,

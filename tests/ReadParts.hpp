@@ -16,4 +16,11 @@ inline constexpr auto read_tear = read_part<Ball>;
 inline constexpr auto read_self_collision = read_part<Distance>;
 inline constexpr auto read_view = read_part<Box>;
 
+/** A model with one sheet. */
+inline Model with_sheet(const std::string& sheet) {
+  Model m;
+  m.sheets = {read_sheet(sheet)};
+  return m;
+}
+
 }  // namespace lab

@@ -18,9 +18,8 @@ using namespace lab;
 namespace {
 
 /** A cloth that hangs from its upper side, let go unstretched. */
-Model hanging(double tolerance) {
-  Model m;
-  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 11 11")};
+Model hanging(double tolerance, const std::string& nodes = "11 11") {
+  Model m = with_sheet("u 1 0 0 v 0 0 -1 nodes " + nodes);
   m.pins = {read_pin("z 0")};
   m.material.density = 1;
   m.material.modulus = 100;
@@ -219,8 +218,7 @@ TEST(Advise, LeavesOutWhatChangesNothing) {
 // A hanging strip comes back to its start after 4 L/c, c =
 // sqrt(modulus/density): there its center is as if there were no gravity.
 TEST(Advise, KeepsAPartWhoseEffectIsSmallAtTheEndAlone) {
-  Model m;
-  m.sheets = {read_sheet("v 0 0 -1 nodes 9 9")};
+  Model m = with_sheet("v 0 0 -1 nodes 9 9");
   m.edges.diagonals = false, m.pins = {read_pin("z 0")};
   m.material.density = 0.3, m.material.modulus = 200;
   m.t_end = 4 * std::sqrt(0.3 / 200), m.tolerance = 1.5e-3;
@@ -257,8 +255,7 @@ TEST(Advise, RefusesChaosAndNamesWhatCanBeHad) {
 // Coarser grids have no node where a pin is, finer ones nodes that are too
 // near.
 TEST(Advise, TellsWhichGridIsNoScene) {
-  Model m = hanging(1e-2);
-  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 21 21")};
+  Model m = hanging(1e-2, "21 21");
   m.pins = {read_pin("z 0"), read_pin("x 0.05")};  // of the second column
   m.t_end = 0.05;
   AdviceRules rules;
@@ -281,8 +278,7 @@ TEST(Advise, TellsWhichGridIsNoScene) {
 TEST(Advise, BeginsAtTwoCells) {
   for (auto [nodes, first] :
        {std::pair("22 27", 9u), {"25 25", 9u}, {"9 40", 33u}}) {
-    Model m = hanging(1e-2);
-    m.sheets = {read_sheet(std::string("u 1 0 0 v 0 0 -1 nodes ") + nodes)};
+    Model m = hanging(1e-2, nodes);
     const Advice a = advise(m);
     ASSERT_EQ(a.refusal, "");
     EXPECT_EQ(a.grids[0].nodes, first) << nodes;
@@ -299,8 +295,7 @@ TEST(Advise, BeginsAtTwoCells) {
 TEST(Advise, KeepsTheShapeOfTheCells) {
   std::string first;
   for (const char* nodes : {"17 9", "21 11", "25 13"}) {
-    Model m;
-    m.sheets = {read_sheet(std::string("u 2 0 0 v 0 1 0 nodes ") + nodes)};
+    Model m = with_sheet(std::string("u 2 0 0 v 0 1 0 nodes ") + nodes);
     m.pins = {read_pin("x 0"), read_pin("x 2")};
     m.material = {.density = 0.4, .modulus = 1000, .drag = 20};
     m.measure = Measure::drape_height;
@@ -312,8 +307,7 @@ TEST(Advise, KeepsTheShapeOfTheCells) {
     EXPECT_NEAR(a.grids.limit()[0], -0.1272, 0.0018);  // of 129 x 65 nodes
   }
   // Of 21 x 26 cells, 5 x 6 have the shape, and 6 x 7 do not.
-  Model m = hanging(1e-4);
-  m.sheets = {read_sheet("u 1 0 0 v 0 0 -1 nodes 22 27")};
+  Model m = hanging(1e-4, "22 27");
   const Advice a = advise(m);
   int seen = 0;
   for (std::size_t k = 0; k < a.grids.size(); ++k) {
@@ -330,8 +324,7 @@ TEST(Advise, KeepsTheShapeOfTheCells) {
 // On the grid of the cheapest choice by Verlet, others meet the tolerance by
 // accident.
 TEST(Advise, NoMethodAloneIsCheaper) {
-  Model m;
-  m.sheets = {read_sheet("v 0 0 -1 nodes 11 11")};
+  Model m = with_sheet("v 0 0 -1 nodes 11 11");
   m.pins = {read_pin("z 0")};
   m.material = {.density = 0.3, .modulus = 200, .drag = 3};
   m.measure = read_measure("point u 0.5 v 1 z");
@@ -352,8 +345,7 @@ TEST(Advise, NoMethodAloneIsCheaper) {
 // Implicit steps of a sheet that falls almost freely need no iteration, which
 // is not predicted.
 TEST(Advise, FindsThatAnImplicitStepIsCheap) {
-  Model m;
-  m.sheets = {read_sheet("u 1.2 0 0 v 0 0.91 0 nodes 33 50")};
+  Model m = with_sheet("u 1.2 0 0 v 0 0.91 0 nodes 33 50");
   m.planes = {read_plane("at 0 0 -0.24 normal -0.12 0 1 friction 0.15")};
   m.material.density = 0.16, m.material.modulus = 47;
   m.measure = Measure::drape_height;
@@ -425,8 +417,7 @@ TEST(Advise, KeepsAMethodAndAStepOrRefuses) {
 
 TEST(Advise, SaysWhereTheShapeOfTheCellsDecides) {
   for (auto [nodes, depends] : {std::pair("17 9", true), {"9 9", false}}) {
-    Model m = hanging(1e-3);
-    m.sheets = {read_sheet(std::string("u 1 0 0 v 0 0 -1 nodes ") + nodes)};
+    Model m = hanging(1e-3, nodes);
     const Advice a = advise(m);
     ASSERT_EQ(a.refusal, "");
     EXPECT_EQ(a.oblong.empty(), !depends) << a.oblong;

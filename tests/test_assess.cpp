@@ -17,8 +17,7 @@ using namespace lab;
 namespace {
 
 Model hanging(const std::string& grid) {
-  Model m;
-  m.sheets = {read_sheet(grid)};
+  Model m = with_sheet(grid);
   m.material = {.density = 0.3, .modulus = 200, .drag = 3};
   m.pins = {read_pin("x 0"), read_pin("x 1")};
   m.method = &table::verlet;

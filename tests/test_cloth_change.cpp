@@ -27,15 +27,13 @@ TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
   std::string list;
   for (const std::string& change : changes)
     list += (list.empty() ? "'" : ", '") + change + "'";
-  Result r = run(net + "--t-end 0.2 --csv " + path("e.csv") + " --out " +
-                 path("end.nodes") + " --config " +
-                 file("s.toml", "at = [" + list + "]\n"));
-  EXPECT_EQ(r.status, 0) << r.err;
+  Result r = success(net + "--t-end 0.2 --csv " + path("e.csv") + " --out " +
+                     path("end.nodes") + " --config " +
+                     file("s.toml", "at = [" + list + "]\n"));
   EXPECT_TRUE(has(r.out, "64 nodes and 208 edges left"));
   EXPECT_EQ(contents(path("end.nodes")), nodes.str());
   EXPECT_EQ(rows(dir / "e.csv").back()[9], 208);
-  r = run(net + "--t-end 0.002 --at '0.001 gravity 3' --at '0.0021 pin 5'");
-  EXPECT_EQ(r.status, 0);
+  r = success(net + "--t-end 0.002 --at '0.001 gravity 3' --at '0.0021 pin 5'");
   EXPECT_EQ(r.err, "cloth: warning: 1 change would come after the end\n");
 }
 
@@ -52,22 +50,20 @@ TEST_F(ClothProgram, KnowsTheStiffestStretchBeforeItStarts) {
   EXPECT_TRUE(has(run(net + "--t-end 0.01 --at '0.004 stiffness 1600'").out,
                   ", symplectic-euler) from t = 0.004 s on"));
   // A step that is chosen is chosen anew.
-  const Result r = run(net +
-                       "--gravity 0 --t-end 0.2 --dt auto --method verlet "
-                       "--at '0.1 stiffness 10000' --csv " +
-                       path("e.csv") + " --every 1");
-  EXPECT_EQ(r.status, 0) << r.err;
+  success(net +
+          "--gravity 0 --t-end 0.2 --dt auto --method verlet "
+          "--at '0.1 stiffness 10000' --csv " +
+          path("e.csv") + " --every 1");
   const auto all = rows(dir / "e.csv");
   const double last = all.back()[0] - all[all.size() - 2][0];
   EXPECT_LT(last, limit("--method verlet --stiffness 10000"));
 }
 
 TEST_F(ClothProgram, CountsEnergyByTheForcesOfItsTime) {
-  const Result r = run(net +
-                       "--t-end 0.4 --method verlet --measure energy "
-                       "--at '0.2 gravity -5' --csv " +
-                       path("e.csv"));
-  EXPECT_EQ(r.status, 0) << r.err;
+  const Result r = success(net +
+                           "--t-end 0.4 --method verlet --measure energy "
+                           "--at '0.2 gravity -5' --csv " +
+                           path("e.csv"));
   const auto last = rows(dir / "e.csv").back();
   EXPECT_GT(last[3], 0) << "below 0 it weighs upwards";
   EXPECT_NEAR(last[12], 0, 1e-3) << "the balance";
@@ -82,8 +78,7 @@ TEST_F(ClothProgram, GoesOnAfterChangesToTheSameBits) {
       "--at '0.0625 stiffness 300' --at '0.0625 cut 27 28' "
       "--at '0.125 gravity 3' ";
   const auto end = [this](const std::string& options) {
-    const Result r = run(options + " --out " + path("end.net"));
-    EXPECT_EQ(r.status, 0) << r.err;
+    success(options + " --out " + path("end.net"));
     return contents(path("end.net"));
   };
   const std::string right = end(scene + "--t-end 0.25");

@@ -12,9 +12,8 @@ const std::string torn =
 
 TEST_F(ClothProgram, WritesFramesOfAClothThatTears) {
   const Result r =
-      run(torn + "--dt 0.003 --csv " + path("e.csv") + " --every 1 --vtp " +
-          path("vtp") + " --ply " + path("ply"));
-  EXPECT_EQ(r.status, 0) << r.err;
+      success(torn + "--dt 0.003 --csv " + path("e.csv") + " --every 1 --vtp " +
+              path("vtp") + " --ply " + path("ply"));
   for (const std::string kind : {"vtp", "ply"})
     EXPECT_TRUE(has(r.out, "16 frames ." + kind + " in " + path(kind) + '\n'));
   // Each frame is the state of a row of the table, of that time.
@@ -46,13 +45,11 @@ TEST_F(ClothProgram, WritesFramesOfAClothThatTears) {
 // A torn cloth, as a net, goes on as it was; frames are read, too.
 TEST_F(ClothProgram, ReadsTheNetsAndTheFramesThatItWrites) {
   const Result whole =
-      run(torn + "--out " + path("end.net") + " --ply " + path("ply"));
-  EXPECT_EQ(whole.status, 0) << whole.err;
+      success(torn + "--out " + path("end.net") + " --ply " + path("ply"));
   const auto at = whole.out.find("nodes and ");
   const std::string edges = whole.out.substr(at + 10, 4);
   const std::string end = " --plane 'at 0 0 -9' --t-end 0 --headless --out ";
-  Result r = run(path("end.net") + end + path("same.net"));
-  EXPECT_EQ(r.status, 0) << r.err;
+  Result r = success(path("end.net") + end + path("same.net"));
   EXPECT_EQ(r.err, "");
   EXPECT_TRUE(has(r.out, " nodes, " + edges));
   EXPECT_TRUE(has(r.out, "held by the net: 9 nodes"));
@@ -60,11 +57,10 @@ TEST_F(ClothProgram, ReadsTheNetsAndTheFramesThatItWrites) {
   r = run(path("ply/frame_000000.ply") + end + path("ply.net"));
   EXPECT_EQ(r.err, "");
   EXPECT_TRUE(has(r.out, "81 nodes, 272 edges"));
-  r = run(path("end.net") + " --out " + path("end.nodes"));
-  EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.err, "cloth: --out is " + path("end.nodes") +
-                       ", expected a name that ends in .net: other files hold "
-                       "quads alone\n");
+  EXPECT_EQ(refusal(path("end.net") + " --out " + path("end.nodes")),
+            "cloth: --out is " + path("end.nodes") +
+                ", expected a name that ends in .net: other files hold quads "
+                "alone\n");
 }
 
 TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
@@ -73,6 +69,7 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
   file("a.tets", "0 1 3 2\n3 1 0 2\n");
   file("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\n");
   file("a.toml", "net = 'a.obj'\npin = 'node 0'\n");
+  file("a.edges", "0 1\n1 0\n1 3\n");
   const std::string short_run = " --headless --t-end 0.01";
   struct {
     std::string options;
@@ -88,10 +85,14 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
       {path("a.nodes") + ' ' + path("a.tets"), "4 nodes, 6 edges",
        "1 face is listed twice: each counts once"},
       {path("a.obj") + " --density 3", "", "nothing holds the cloth, and"},
+      {path("a.nodes") + ' ' + path("a.edges") + " --pin 'x 0'",
+       "springs, K 100 N/m: 2",
+       "1 spring is listed from both ends: each counts"},
+      {"--sheet 'nodes 3 3' --gravity -9.81",
+       "gravity -9.81 m/s^2 points up, 9.81 down: 9 nodes", ""},
       {"--sheet 'nodes 75 1' --pin 'x 0'", "75 nodes, 74 edges", ""}};
   for (const auto& c : cases) {
-    const Result r = run(c.options + short_run);
-    EXPECT_EQ(r.status, 0) << c.options << r.err;
+    const Result r = success(c.options + short_run);
     EXPECT_TRUE(has(r.out, c.out)) << c.options;
     EXPECT_TRUE(has(r.err, c.err)) << c.options;
     EXPECT_EQ(r.err.empty(), !*c.err) << c.options << r.err;
@@ -99,12 +100,7 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
 }
 
 TEST_F(ClothProgram, RefusesFoldersThatAreInUse) {
-  auto error = [this](const std::string& options) {
-    const Result r = run(torn + options);
-    EXPECT_EQ(r.status, 2) << options;
-    EXPECT_EQ(r.out, "");
-    return r.err;
-  };
+  auto error = [&](const std::string& more) { return refusal(torn + more); };
   fs::create_directory(dir / "mine");
   file("mine/x", "mine");
   EXPECT_EQ(error("--vtp " + path("mine")),
@@ -124,14 +120,13 @@ TEST_F(ClothProgram, SaysWhereASceneIsWrongAlsoWhenItIsFoundOutLate) {
   const std::string scene = file(
       "s.toml", "\xEF\xBB\xBFsheet = \"nodes 9 9\"\n# held\npin = \"x 0.3\"\n");
   const std::string run_it = "--config " + scene + " --headless --t-end 0 ";
-  Result r = run(run_it);
-  EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.err, scene +
-                       ":3: --pin \"x 0.3\" holds no node: the nearest is node "
-                       "18 at 0.25 0 0\n");
+  EXPECT_EQ(refusal(run_it),
+            scene +
+                ":3: --pin \"x 0.3\" holds no node: the nearest is node 18 "
+                "at 0.25 0 0\n");
   EXPECT_EQ(run(run_it + "--pin 'x 0'").status, 0);
   file("s.toml", "sheet = \"nodes 9 9\"\nself-collision = \"thickness 0.3\"\n");
-  EXPECT_TRUE(begins(run(run_it).err, scene + ":2: --self-collision has"));
+  EXPECT_TRUE(begins(refusal(run_it), scene + ":2: --self-collision has"));
   file("s.toml", "sheet = \"nodes 9 9\"\ndt = 0.1\n");
   EXPECT_EQ(run("--config " + scene + " --t-end 0.05").err,
             scene + ":2: --dt is 0.1, expected at most --t-end\n");
@@ -150,8 +145,7 @@ TEST_F(ClothProgram, SeeksTheFilesOfASceneBesideIt) {
       file("s.toml",
            "nodes = \"sub/a.nodes\"\ntets = \"sub/a.tets\"\n"
            "csv = \"e.csv\"\nheadless = true\nt-end = 0.01\n");
-  const Result r = run("--config " + scene);
-  EXPECT_EQ(r.status, 0) << r.err;
+  success("--config " + scene);
   EXPECT_EQ(files(), (std::vector<std::string>{"e.csv", "s.toml", "sub"}));
   // On the command line it is relative to the working directory.
   EXPECT_EQ(run("--config " + scene + " --nodes sub/a.nodes").err,
@@ -174,23 +168,18 @@ TEST_F(ClothProgram, DumpsScenesThatCanBeReadBack) {
   file(odd + "/a.nodes", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
   file(odd + "/a.tets", "0 1 2 3\n");
   const std::string quoted = "'" + path(odd) + "/a";
-  Result r = run(quoted + ".nodes' " + quoted +
-                 ".tets' --region 'from 0 0 0 to 1 0 0 mass-factor 3 "
-                 "stiffness-factor 2' --pin 'x 0' --dump-config");
-  EXPECT_EQ(r.status, 0) << r.err;
-  const std::string dump = r.out;
+  const std::string dump =
+      success(quoted + ".nodes' " + quoted +
+              ".tets' --region 'from 0 0 0 to 1 0 0 mass-factor 3 "
+              "stiffness-factor 2' --pin 'x 0' --dump-config")
+          .out;
   const std::string scene = file("dump.toml", dump);
   EXPECT_EQ(run("--config " + scene + " --dump-config").out, dump);
-  r = run("--config " + scene + " --headless --t-end 0.01");
-  EXPECT_EQ(r.status, 0) << r.err;
+  success("--config " + scene + " --headless --t-end 0.01");
 }
 
 TEST_F(ClothProgram, KnowsFormatsByTheEndingsOfNames) {
-  auto error = [this](const std::string& options) {
-    const Result r = run(torn + options);
-    EXPECT_EQ(r.status, 2) << options;
-    return r.err;
-  };
+  auto error = [&](const std::string& more) { return refusal(torn + more); };
   EXPECT_EQ(error("--screenshot a.jpg"),
             "cloth: --screenshot is a.jpg, expected a name that ends in "
             ".png\n");

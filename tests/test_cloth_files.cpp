@@ -19,10 +19,8 @@ TEST_F(ClothProgram, RefusesTwoOutputsInOneFile) {
   fs::create_symlink("d", dir / "link");
   const std::string one = path("d/x");
   auto clash = [&](const std::string& a, const std::string& b) {
-    Result r = run(small + a + ' ' + b);
-    EXPECT_EQ(r.status, 2) << a << b;
-    EXPECT_EQ(r.out, "") << a << b;
-    EXPECT_TRUE(has(r.err, " also writes, expected another file\n"));
+    EXPECT_TRUE(has(refusal(small + a + ' ' + b),
+                    " also writes, expected another file\n"));
     EXPECT_TRUE(fs::is_empty(dir / "d")) << a << b;
   };
   clash("--csv " + one, "--out " + one);
@@ -41,9 +39,8 @@ TEST_F(ClothProgram, SaysWhichLineNamesAnOutputThatCantBe) {
     const std::string scene =
         file("a.toml",
              "sheet = 'nodes 4 4'\n" + std::string(option) + " = 'no/x'\n");
-    Result r = run("--headless --config " + scene);
-    EXPECT_EQ(r.status, 2) << option;
-    EXPECT_TRUE(begins(r.err, scene + ":2: " + path("no/x") + ": can't be "));
+    EXPECT_TRUE(begins(refusal("--headless --config " + scene),
+                       scene + ":2: " + path("no/x") + ": can't be "));
   }
 }
 
@@ -57,10 +54,9 @@ TEST_F(ClothProgram, LeavesTheFilesItReadsAlone) {
   auto refuses = [&](const std::string& option, const std::string& input,
                      const std::string& reader) {
     const std::string before = contents(input);
-    Result r = run(scene + " --" + option + ' ' + input);
-    EXPECT_EQ(r.status, 2) << option << ' ' << input;
-    EXPECT_EQ(r.err, "cloth: --" + option + " is " + input + ", which --" +
-                         reader + " reads, expected another file\n");
+    EXPECT_EQ(refusal(scene + " --" + option + ' ' + input),
+              "cloth: --" + option + " is " + input + ", which --" + reader +
+                  " reads, expected another file\n");
     EXPECT_EQ(contents(input), before);
   };
   refuses("csv", nodes, "nodes");
@@ -74,22 +70,16 @@ TEST_F(ClothProgram, LeavesTheFilesItReadsAlone) {
 TEST_F(ClothProgram, RefusesAnEmptyNameOfAFile) {
   for (const char* option : {"csv", "out", "screenshot", "record", "config",
                              "write-config", "nodes", "tets"})
-    for (const char* scene : {"--sheet 'nodes 4 4'", "data/grid0.nodes"}) {
-      Result r = run(std::string("--") + option + " '' " + scene);
-      EXPECT_EQ(r.status, 2) << option;
-      EXPECT_EQ(r.out, "") << option;
-      EXPECT_EQ(r.err, std::string("cloth: --") + option +
-                           ": is empty, expected a file name\n");
-    }
+    for (const char* scene : {"--sheet 'nodes 4 4'", "data/grid0.nodes"})
+      EXPECT_EQ(refusal(std::string("--") + option + " '' " + scene),
+                std::string("cloth: --") + option +
+                    ": is empty, expected a file name\n");
 }
 
 TEST_F(ClothProgram, TakesNoOptionForTheNameOfAFile) {
   for (const char* option : {"csv", "out", "vtp", "checkpoint", "write-config"})
     for (const char* end : {" --quiet", "= --quiet"}) {
-      Result r = run(small + "--" + option + end);
-      EXPECT_EQ(r.status, 2) << option;
-      EXPECT_EQ(r.out, "") << option;
-      EXPECT_EQ(r.err,
+      EXPECT_EQ(refusal(small + "--" + option + end),
                 std::string("cloth: --") + option +
                     ": is --quiet, expected a file name, such as ./--quiet\n");
       EXPECT_FALSE(fs::exists("--quiet"));
@@ -152,11 +142,9 @@ TEST_F(ClothProgram, SaysThatThereIsNoMemoryToDraw) {
 }
 
 TEST_F(ClothProgram, RefusesAFilmOfMoreThanADay) {
-  Result r =
-      run("--sheet 'nodes 4 4' --t-end 1e300 --dt auto --quiet --record " +
-          path("v.mp4"));
-  EXPECT_EQ(r.status, 2);
-  EXPECT_EQ(r.err,
+  EXPECT_EQ(refusal("--sheet 'nodes 4 4' --t-end 1e300 --dt auto --quiet "
+                    "--record " +
+                    path("v.mp4")),
             "cloth: --t-end is 1e+300, expected at most 86400 s (a day) for a "
             "film\n");
 }

@@ -8,19 +8,13 @@
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Trial.hpp"
+#include "tests/Built.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/Says.hpp"
 
 using namespace lab;
 
 namespace {
-
-Model with_sheet(const std::string& sheet) {
-  Model m;
-  m.sheets = {read_sheet(sheet)};
-  return m;
-}
-void build(Cloth& g, const Model& m) { build_model(g, m, mesh_of(m)); }
 
 /** The spring between two nodes, by their indices. */
 EdgeData spring(const Cloth& g, unsigned i, unsigned j) {
@@ -32,13 +26,27 @@ EdgeData spring(const Cloth& g, unsigned i, unsigned j) {
 
 // ------------------------------------------------------------------- The cloth
 
+<<<<<<< HEAD
+=======
+TEST(Compose, ASheetOfTheUnitSquareIsTheGridOfTheAssignment) {
+  const Cloth sheet = built(with_sheet("nodes 7 7"));
+  Cloth grid;
+  build_cloth(grid, grid_points(7), grid_quads(7), MeshSprings::diagonals);
+  ASSERT_EQ(sheet.num_nodes(), grid.num_nodes());
+  ASSERT_EQ(sheet.num_edges(), grid.num_edges());
+  for (unsigned i = 0; i < grid.num_nodes(); ++i)
+    EXPECT_LT(norm(sheet.node(i).position() - grid.node(i).position()), 1e-15);
+  for (unsigned e = 0; e < grid.num_edges(); ++e)
+    EXPECT_EQ(sheet.edge(e).node1().index(), grid.edge(e).node1().index());
+}
+
+>>>>>>> files
 TEST(Compose, EdgesAreTheOnesNamed) {
   const unsigned n = 5, m = 4;
   const auto count = [&](const std::string& edges) {
     Model model = with_sheet("nodes 5 4");
     model.edges = read_edges(edges);
-    Cloth g;
-    build(g, model);
+    Cloth g = built(model);
     return g.num_edges();
   };
   const unsigned sides = n * (m - 1) + m * (n - 1);
@@ -53,8 +61,7 @@ TEST(Compose, EdgesAreTheOnesNamed) {
 TEST(Compose, BendSpringsLieAcrossTwoSidesInALine) {
   Model m = with_sheet("u 2 0 0 nodes 4 5");
   m.edges = read_edges("sides bend");
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   for (Edge e : g.edges()) {
     const Point way = e.node2().position() - e.node1().position();
     EXPECT_TRUE(way.x == 0 || way.y == 0);
@@ -64,18 +71,30 @@ TEST(Compose, BendSpringsLieAcrossTwoSidesInALine) {
   EXPECT_NEAR(spring(g, 0, 10).L, 4 / 3., 1e-15);  // along u
 }
 
+<<<<<<< HEAD
+=======
+TEST(Compose, SheetsLieBesideEachOther) {
+  Model m = with_sheet("nodes 3 3");
+  m.sheets.push_back(read_sheet("at 0 0 1 u 0 0 2 nodes 2 4"));
+  Cloth g = built(m);
+  ASSERT_EQ(g.num_nodes(), 9u + 8u);
+  EXPECT_EQ(g.node(9).position(), Point(0, 0, 1));
+  EXPECT_EQ(g.node(16).position(), Point(0, 1, 3));
+  for (Edge e : g.edges())
+    EXPECT_EQ(e.node1().index() < 9, e.node2().index() < 9);
+}
+
+>>>>>>> files
 // ---------------------------------------------------------------------- A net
 
 TEST(Compose, ASheetOfOneRowIsARope) {
   for (const char* nodes : {"nodes 75 1", "nodes 1 75"}) {
-    Cloth g;
-    build(g, with_sheet(nodes));
+    Cloth g = built(with_sheet(nodes));
     EXPECT_EQ(g.num_nodes(), 75u);
     ASSERT_EQ(g.num_edges(), 74u);
     EXPECT_NEAR(spring(g, 73, 74).L, 1 / 74., 1e-15);
   }
-  Cloth mass;
-  build(mass, with_sheet("nodes 1 1"));
+  Cloth mass = built(with_sheet("nodes 1 1"));
   EXPECT_EQ(mass.num_nodes(), 1u);
 }
 
@@ -87,16 +106,14 @@ Net two_triangles() {
 TEST(Compose, ATriangleHasItsThreeEdgesAndAThirdOfItsMassAtEachNode) {
   Model m;
   m.material.density = 0.6;
-  Cloth g;
-  build_model(g, m, two_triangles());
+  Cloth g = built(m, two_triangles());
   EXPECT_EQ(g.num_edges(), 5u);
   EXPECT_NEAR(spring(g, 1, 2).L, std::sqrt(2), 1e-15);
   EXPECT_NEAR(g.node(0).value().mass, 0.1, 1e-15);
   EXPECT_NEAR(g.node(1).value().mass, 0.2, 1e-15);
   EXPECT_NEAR(total_mass(g), 0.6, 1e-15);
   m.edges.bend = true;
-  Cloth stiff;
-  build_model(stiff, m, two_triangles());
+  Cloth stiff = built(m, two_triangles());
   EXPECT_EQ(stiff.num_edges(), 6u);
   EXPECT_EQ(spring(stiff, 0, 3).L, std::sqrt(2));
 }
@@ -109,8 +126,7 @@ TEST(Compose, ModulusOfTrianglesIsThatOfTheirLattice) {
           {face_around(0, 1, 2), face_around(1, 3, 2)}};
   Model m;
   m.material.modulus = 2 / std::sqrt(3);
-  Cloth g;
-  build_model(g, m, net);
+  Cloth g = built(m, net);
   EXPECT_NEAR(spring(g, 1, 2).K, 1, 1e-15);
   EXPECT_NEAR(spring(g, 0, 1).K, 0.5, 1e-15);  // at the rim
 }
@@ -123,8 +139,7 @@ TEST(Compose, ANetListsItsSpringsMassesAndHeldNodes) {
   net.held = {0};
   Model m;
   m.stiffness = 7;
-  Cloth g;
-  build_model(g, m, net);
+  Cloth g = built(m, net);
   ASSERT_EQ(g.num_edges(), 2u);
   EXPECT_NEAR(spring(g, 0, 1).K, 40, 1e-13);
   EXPECT_NEAR(spring(g, 0, 1).L, 0.8, 1e-15);  // (10 * 0.5 + 30 * 0.9)/40
@@ -140,26 +155,22 @@ TEST(Compose, ANetListsItsSpringsMassesAndHeldNodes) {
   // One in the place of a face's spring replaces it.
   Net faces = two_triangles();
   faces.springs = {{2, 1, 3, 0}};
-  Cloth sewn;
-  build_model(sewn, m, faces);
+  Cloth sewn = built(m, faces);
   EXPECT_EQ(sewn.num_edges(), 5u);
   EXPECT_EQ(spring(sewn, 1, 2).L, 0);
   faces.bare_faces = true;
-  Cloth bare;
-  build_model(bare, m, faces);
+  Cloth bare = built(m, faces);
   EXPECT_EQ(bare.num_edges(), 1u);
   m.material.modulus = 1;
   net.springs.push_back({0, 2});
-  Cloth none;
-  EXPECT_THROW(build_model(none, m, net), SceneError);
+  EXPECT_THROW(built(m, net), SceneError);
 }
 
 TEST(Compose, EachKindOfSpringMayHaveItsOwnStiffness) {
   Model m = with_sheet("nodes 3 3");
   m.edges = read_edges("sides 40 diagonals bend 2");
   m.rest_length = 0.5;
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   EXPECT_EQ(spring(g, 0, 1).K, 40);
   EXPECT_EQ(spring(g, 0, 4).K, 100);
   EXPECT_EQ(spring(g, 0, 2).K, 2);
@@ -189,6 +200,23 @@ TEST(Compose, APinHoldsNodesByPlaceOrIndex) {
 
 // ---------------------------------------------------------------- The material
 
+<<<<<<< HEAD
+=======
+TEST(Compose, MassIsDensityTimesArea) {
+  Model m = with_sheet("u 2 0 0 v 0 0.5 0 nodes 4 6");
+  m.material.density = 0.3;
+  Cloth g = built(m);
+  EXPECT_NEAR(total_mass(g), 0.3 * 1, 1e-14);
+  const double cell = 0.3 / 15;
+  EXPECT_NEAR(g.node(0).value().mass, cell / 4, 1e-15);  // a corner
+  EXPECT_NEAR(g.node(1).value().mass, cell / 2, 1e-15);  // on the rim
+  EXPECT_NEAR(g.node(7).value().mass, cell, 1e-15);      // inside
+  m.material.density.reset();
+  Cloth as_assigned = built(m);
+  EXPECT_NEAR(as_assigned.node(0).value().mass, 1 / 24., 1e-15);
+}
+
+>>>>>>> files
 // Both ends of an edge have to be in the box for another K; a node counts by
 // its place at the start. Where two boxes overlap, factors multiply.
 TEST(Compose, RegionsChangeTheirNodesAndEdges) {
@@ -196,8 +224,7 @@ TEST(Compose, RegionsChangeTheirNodesAndEdges) {
   m.regions = {
       read_region("from 0 0 0 to 0.5 1 0 mass-factor 50 stiffness-factor 1e4"),
       read_region("from 1 1 1 to 0.5 0.5 -1 mass-factor 2")};
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   int stiff = 0;
   for (Edge e : g.edges()) {
     const bool in =
@@ -217,8 +244,7 @@ TEST(Compose, ARegionHasSomethingToChange) {
   auto complaint = [](const std::string& region) {
     Model m = with_sheet("nodes 5 5");
     m.regions = {read_region(region)};
-    Cloth g;
-    return error_of<SceneError>([&] { build(g, m); });
+    return error_of<SceneError>([&] { built(m); });
   };
   EXPECT_EQ(complaint("from 0.1 0 0 to 0.2 1 0 mass-factor 2"),
             "--region \"from 0.1 0 0 to 0.2 1 0 mass-factor 2\" holds no node");
@@ -232,8 +258,7 @@ TEST(Compose, NodesStartWithTheirVelocityUnlessTheyAreHeld) {
   Model m = with_sheet("nodes 3 3");
   m.sheets.push_back(read_sheet("at 0 0 1 nodes 2 2 velocity 1 2 3"));
   m.pins = {read_pin("x 1 y 1 z 1")};
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   for (unsigned i = 0; i < 13; ++i)
     EXPECT_EQ(g.node(i).value().vel,
               i < 9 || i == 12 ? Point() : Point(1, 2, 3))
@@ -253,15 +278,13 @@ TEST(Compose, StiffnessIsModulusTimesWidthOverLength) {
   Model m = with_sheet("u 3 0 0 nodes 4 6");  // cells of 1 by 0.2
   m.edges = read_edges("sides diagonals bend");
   m.material.modulus = 10;
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   EXPECT_NEAR(spring(g, 7, 13).K, 10 * 0.2 / 1, 1e-12);  // inside, along u
   EXPECT_NEAR(spring(g, 7, 8).K, 10 * 1 / 0.2, 1e-12);   // inside, along v
   EXPECT_NEAR(spring(g, 0, 6).K, 10 * 0.1 / 1, 1e-12);   // on the rim
   Model square = m;
   square.sheets = {read_sheet("nodes 6 6")};
-  Cloth s;
-  build(s, square);
+  Cloth s = built(square);
   for (auto [i, j] : {std::pair(7u, 8u),
                       {7u, 13u},
                       {7u, 14u},
@@ -280,8 +303,7 @@ TEST(Compose, StrainOfOneGridIsStrainOfAnother) {
     Model m = with_sheet(std::string("u 2 0 0 v 0 0.7 0 nodes ") + nodes);
     m.edges = read_edges("sides");
     m.material.modulus = 10;
-    Cloth g;
-    build(g, m);
+    Cloth g = built(m);
     for (Node n : g.nodes()) n.position().x *= 1.01;
     double energy = 10 * 0.01 * 0.01 / 2 * (2 * 0.7);
     EXPECT_NEAR(elastic_energy(g), energy, 1e-12) << nodes;
@@ -289,12 +311,11 @@ TEST(Compose, StrainOfOneGridIsStrainOfAnother) {
 }
 
 TEST(Compose, ANodeWithoutAQuadHasNoMassByArea) {
-  Cloth g;
   Model m;
   m.material.density = 1;
   Net mesh{grid_points(2), grid_quads(2)};
   mesh.points.push_back(Point(9, 9, 9));
-  EXPECT_THROW(build_model(g, m, mesh), SceneError);
+  EXPECT_THROW(built(m, mesh), SceneError);
 }
 
 /** log2 of how much the answer moves from 1 to 2 over from 2 to 4 times the
@@ -330,8 +351,7 @@ TEST(Compose, RefiningAHangingClothConvergesAtOrderTwo) {
 
 TEST(Compose, WhatIsNotNamedCostsNothing) {
   Model m = with_sheet("nodes 3 3");
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   // Without a constraint no node is looked at: a cloth below any floor stays.
   for (Node n : g.nodes()) n.position().z = -100;
   constraint_of(m, mesh_of(m), g)(g, 0);
@@ -351,8 +371,7 @@ TEST(Compose, DragPerAreaIsSharedByTheNodesAsTheirMassIs) {
   Model m = with_sheet("u 2 0 0 nodes 4 5");
   m.material.drag = 3;
   m.material.density = 0.5;
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   const CombinedForces force = force_of(m, mesh_of(m), g);
   const Drag drag = ForcePlan(force).drag();
   double all = 0;
@@ -410,8 +429,7 @@ TEST(Compose, ALooseSheetFallsAsAPointByEachMethod) {
 
 TEST(Compose, PinsMustHoldANode) {
   Model m = with_sheet("nodes 3 3");
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   m.pins = {read_pin("x 0.5"), read_pin("x 0.4")};
   EXPECT_EQ(error_of<SceneError>([&] { constraint_of(m, mesh_of(m), g); }),
             "--pin \"x 0.4\" holds no node: the nearest is node 3 at 0.5 0 0");
@@ -419,8 +437,7 @@ TEST(Compose, PinsMustHoldANode) {
 
 TEST(Compose, SelfCollisionMustFitTheStart) {
   Model m = with_sheet("nodes 5 5");  // two nodes two sides apart: 0.5 m
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   m.self_collision = {.thickness = 0.51};
   EXPECT_THROW(constraint_of(m, mesh_of(m), g), SceneError);
   m.self_collision = {.thickness = 0.49};

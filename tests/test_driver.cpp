@@ -45,6 +45,14 @@ class Driver : public ::testing::Test {
   Result run(const std::string& arguments, const std::string& stage = "tear") {
     return folder.run("timeout 60 " + program(stage) + " " + arguments);
   }
+  /** The words with which a stage refuses @a arguments. */
+  std::string refusal(const std::string& arguments,
+                      const std::string& stage = "tear") {
+    const Result r = run(arguments, stage);
+    EXPECT_EQ(r.status, 2) << arguments;
+    EXPECT_EQ(r.out, "") << arguments;
+    return r.err;
+  }
   /** Run the first stage with a square of 1 kg that nothing holds. */
   Result run_loose(const std::string& times) {
     return run(file("n", "0 0 1\n1 0 1\n0 1 1\n1 1 1\n") + " " +
@@ -111,11 +119,8 @@ TEST_F(Driver, RunsEveryStageToItsEnd) {
 }
 
 TEST_F(Driver, RefusesAStepBeyondTheEndAndOneTooShort) {
-  for (const char* times : {"0.01 0.004", "1e-20", "6"}) {
-    Result r = run(grid(0) + times);
-    EXPECT_EQ(r.status, 2) << times;
-    EXPECT_TRUE(has(r.err, "expected at most T_END"));
-  }
+  for (const char* times : {"0.01 0.004", "1e-20", "6"})
+    EXPECT_TRUE(has(refusal(grid(0) + times), "expected at most T_END"));
   EXPECT_EQ(run(grid(0) + "0.25 0.25").status, 0);  // one step
 }
 
@@ -159,20 +164,14 @@ TEST_F(Driver, LetsALooseClothFallFreely) {
 }
 
 TEST_F(Driver, SaysHowItIsUsed) {
-  for (const char* arguments : {"", "data/grid0.nodes", "a b 0.1 1 5"}) {
-    Result r = run(arguments);
-    EXPECT_EQ(r.status, 2) << arguments;
-    EXPECT_EQ(r.out, "") << arguments;
-    EXPECT_EQ(r.err, "usage: ./mass_spring NODES TETS [DT [T_END]]\n");
-  }
+  for (const char* arguments : {"", "data/grid0.nodes", "a b 0.1 1 5"})
+    EXPECT_EQ(refusal(arguments),
+              "usage: ./mass_spring NODES TETS [DT [T_END]]\n");
   for (const char* number : {"0", "-1", "nan", "inf", "x", "0.001x", "''"}) {
-    Result r = run(grid(0) + number);
-    EXPECT_EQ(r.status, 2) << number;
-    EXPECT_TRUE(begins(r.err, "DT is '"));
-    EXPECT_TRUE(has(r.err, "', expected a time [s], more than 0\n"));
-    r = run(grid(0) + "0.001 " + number);
-    EXPECT_EQ(r.status, 2) << number;
-    EXPECT_TRUE(begins(r.err, "T_END is '"));
+    const std::string said = refusal(grid(0) + number);
+    EXPECT_TRUE(begins(said, "DT is '"));
+    EXPECT_TRUE(has(said, "', expected a time [s], more than 0\n"));
+    EXPECT_TRUE(begins(refusal(grid(0) + "0.001 " + number), "T_END is '"));
   }
 }
 
@@ -180,12 +179,10 @@ TEST_F(Driver, RefusesBadInputWithFileAndLine) {
   auto bad = [this](const std::string& nodes, const std::string& tets,
                     const std::string& message) {
     for (const char* stage : {"problem1", "tear"}) {
-      Result r = run(nodes + " " + tets, stage);
-      EXPECT_EQ(r.status, 2) << message;
-      EXPECT_EQ(r.out, "");
-      EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
-      EXPECT_TRUE(begins(r.err, message));
-      EXPECT_TRUE(has(r.err, ", expected "));
+      const std::string said = refusal(nodes + " " + tets, stage);
+      EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
+      EXPECT_TRUE(begins(said, message));
+      EXPECT_TRUE(has(said, ", expected "));
     }
   };
   const std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");

@@ -125,16 +125,14 @@ std::map<std::string, std::vector<double>> arrays_of(const std::string& vtp) {
 
 /** A sheet of 2 m x 1 m, 3 x 2 cells, in the plane z = 0, held at a corner. */
 Model small_model() {
-  Model m;
-  m.sheets = {read_sheet("u 2 0 0 nodes 4 3 velocity 0 0 -1")};
+  Model m = with_sheet("u 2 0 0 nodes 4 3 velocity 0 0 -1");
   m.pins = {read_pin("x 0 y 0")};
   m.damping = 0.25;
   return m;
 }
 
 TEST(Frame, HasTheStateOfTheScene) {
-  const Model m = small_model();
-  Scene scene(m);
+  Scene scene(small_model());
   Node n = scene.cloth().node(4);  // at (2/3, 0.5, 0)
   n.position().z = 0.5;
   const Frame f = frame_of(scene, nullptr);
@@ -163,8 +161,7 @@ TEST(Frame, HasTheStateOfTheScene) {
 
 // Without a node, and without a side between two that are left.
 TEST(Frame, OfATornClothHasWhatIsLeftOfItAndAllPlaces) {
-  const Model m = small_model();
-  Scene scene(m);
+  Scene scene(small_model());
   Cloth& g = scene.cloth();
   g.node(0).position().z = 0.25;
   const Frame before = frame_of(scene, nullptr);
@@ -184,8 +181,7 @@ TEST(Frame, OfATornClothHasWhatIsLeftOfItAndAllPlaces) {
 }
 
 TEST(Vtp, SaysAllThatIsLeft) {
-  const Model m = small_model();
-  Scene scene(m);
+  Scene scene(small_model());
   const Frame before = frame_of(scene, nullptr);
   scene.cloth().node(4).position().z = 0.5;
   scene.cloth().remove_node(scene.cloth().node(0));
@@ -238,8 +234,7 @@ TEST(Vtp, SaysAllThatIsLeft) {
 }
 
 TEST(Ply, KeepsTheOrderOfItsPoints) {
-  const Model m = small_model();
-  Scene scene(m);
+  Scene scene(small_model());
   const Frame before = frame_of(scene, nullptr);
   scene.cloth().node(4).position() = Point(0.1, 0.25, 0.5);
   scene.cloth().remove_node(scene.cloth().node(0));
@@ -326,8 +321,7 @@ TEST(Settled, ReadsTheStatesThatStay) {
 
 TEST(Export, BeginsAnewWithTheRun) {
   const CME212::TestFolder folder;
-  const Model m = small_model();
-  Scene scene(m);
+  Scene scene(small_model());
   Export frames({{FrameFormat::ply, folder / "ply"}}, 30, scene);
   frames.add(scene);
   for (int k = 0; k < 3; ++k) scene.step(), frames.add(scene);
@@ -358,8 +352,7 @@ TEST(Export, LeavesOtherFilesAlone) {
 
 TEST(Export, DoesNotMixItsFramesWithThoseOfAnotherRun) {
   const CME212::TestFolder folder;
-  const Model m = small_model();
-  Scene scene(m);
+  Scene scene(small_model());
   const std::string name = folder / "ply";
   Export one({{FrameFormat::ply, name}}, 30, scene);
   Export other({{FrameFormat::ply, name}}, 30, scene);  // empty still
@@ -370,13 +363,11 @@ TEST(Export, DoesNotMixItsFramesWithThoseOfAnotherRun) {
             name + "/frame_000000.ply: another run writes frames there");
 }
 
-// ---------------------------------------------------------------- The mesh
-// left
+// --------------------------------------------------------------- The mesh left
 
 TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   const CME212::TestFolder folder;
-  const Model m = small_model();
-  Scene scene(m);
+  Scene scene(small_model());
   Cloth& g = scene.cloth();
   ASSERT_TRUE(scene.run_to(0.1));
   g.remove_node(g.node(0));
@@ -385,9 +376,7 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
   write_nodes(nodes, left), write_quads(tets, left);
   nodes.close(), tets.close();
   const auto again = load_mesh(folder / "end.nodes", folder / "end.tets");
-  EXPECT_EQ(again.points, left.points);
-  EXPECT_EQ(again.velocities, left.velocities);
-  EXPECT_EQ(again.quads, left.quads);
+  EXPECT_TRUE(again == left);
   ASSERT_EQ(again.points.size(), 11u);
   ASSERT_EQ(again.quads.size(), 5u);
   // In the order of the mesh, whatever indices the nodes have now.
@@ -396,17 +385,14 @@ TEST(MeshLeft, IsReadBackAsTheSameCloth) {
     EXPECT_EQ(again.points[i], n.position());
     EXPECT_EQ(again.velocities[i], n.value().vel);
   }
-  Model next = m;
+  Model next = small_model();
   next.sheets.clear(), next.pins.clear();
   next.nodes = folder / "end.nodes", next.tets = folder / "end.tets";
   Scene cloth(next);
   EXPECT_EQ(cloth.cloth().num_nodes(), g.num_nodes());
   // But for the diagonal of the quad that is gone.
   EXPECT_EQ(cloth.cloth().num_edges(), g.num_edges() - 1);
-  const Net same = mesh_left(cloth.cloth(), cloth.mesh());
-  EXPECT_EQ(same.points, left.points);
-  EXPECT_EQ(same.velocities, left.velocities);
-  EXPECT_EQ(same.quads, left.quads);
+  EXPECT_TRUE(mesh_left(cloth.cloth(), cloth.mesh()) == left);
 }
 
 }  // namespace

@@ -83,58 +83,39 @@ TEST(Util, TotallyOrderedGivesTheOtherOperators) {
 // ------------------------------------------------------------ CME212/Point.hpp
 
 TEST(PointTest, Arithmetic) {
-  Point a(1, 2, 3), b(4, -5, 6);
-  EXPECT_EQ(a + b, Point(5, -3, 9));
-  EXPECT_EQ(a - b, Point(-3, 7, -3));
-  EXPECT_EQ(a * b, Point(4, -10, 18));
-  EXPECT_EQ(b / a, Point(4, -2.5, 2));
-  EXPECT_EQ(-a, Point(-1, -2, -3));
-  EXPECT_EQ(+a, a);
-  EXPECT_EQ(2 * a, a * 2);
-  EXPECT_EQ(2 * a, Point(2, 4, 6));
-  EXPECT_EQ(a / 2, Point(.5, 1, 1.5));
-  EXPECT_EQ(a + 1, 1 + a);
-  EXPECT_EQ(a + 1, Point(2, 3, 4));
-  EXPECT_EQ(a - 1, Point(0, 1, 2));
-  EXPECT_EQ(1 - a, Point(0, -1, -2));
+  const Point a(1, 2, 3), b(4, -5, 6);
+  const std::vector<std::pair<Point, Point>> all = {
+      {a + b, {5, -3, 9}}, {a - b, {-3, 7, -3}},  {a * b, {4, -10, 18}},
+      {+a, {1, 2, 3}},     {b / a, {4, -2.5, 2}}, {-a, {-1, -2, -3}},
+      {2 * a, {2, 4, 6}},  {a * 2, {2, 4, 6}},    {a / 2, {.5, 1, 1.5}},
+      {a + 1, {2, 3, 4}},  {1 + a, {2, 3, 4}},    {a - 1, {0, 1, 2}},
+      {1 - a, {0, -1, -2}}};
+  for (std::size_t k = 0; k < all.size(); ++k)
+    EXPECT_EQ(all[k].first, all[k].second) << k;
   Point c = a;
-  c += b;
-  c -= Point(1);
-  c *= 2;
-  c /= Point(2, 1, 1);
-  EXPECT_EQ(c, Point(4, -8, 16));
-  c *= Point(1, 2, 3);
-  c /= 4;
-  c += 1;
-  c -= 2;
-  EXPECT_EQ(c, Point(0, -5, 11));
+  ((c += b) -= Point(1)) *= 2;
+  EXPECT_EQ(c /= Point(2, 1, 1), Point(4, -8, 16));
+  ((c *= Point(1, 2, 3)) /= 4) += 1;
+  EXPECT_EQ(c -= 2, Point(0, -5, 11));
   EXPECT_TRUE(a != b && !(a == b));
 }
 
-TEST(PointTest, Products) {
-  Point x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), a(1, 2, 3), b(4, -5, 6);
-  EXPECT_EQ(cross(x, y), z);
-  EXPECT_EQ(cross(y, z), x);
-  EXPECT_EQ(cross(z, x), y);
+TEST(PointTest, ProductsAndNorms) {
+  const Point x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), a(1, 2, 3), b(4, -5, 6);
+  EXPECT_TRUE(cross(x, y) == z && cross(y, z) == x && cross(z, x) == y);
   EXPECT_EQ(cross(a, b), Point(27, 6, -13));
   EXPECT_EQ(dot(a, b), 12);
   EXPECT_EQ(inner_prod(a, b), 12);
-  EXPECT_EQ(dot(cross(a, b), a), 0);
-}
-
-TEST(PointTest, Norms) {
-  Point a(2, -3, 6);
-  EXPECT_EQ(norm(a), 7);
-  EXPECT_EQ(norm_2(a), 7);
-  EXPECT_EQ(normSq(a), 49);
-  EXPECT_EQ(norm_1(a), 11);
-  EXPECT_EQ(norm_inf(a), 6);
-  EXPECT_EQ(norm(Point()), 0);
+  const Point c(2, -3, 6);
+  EXPECT_EQ((std::vector{norm(c), norm_2(c), normSq(c), norm_1(c), norm_inf(c),
+                         norm(Point())}),
+            (std::vector<double>{7, 7, 49, 11, 6, 0}));
 }
 
 TEST(PointTest, Elements) {
   EXPECT_EQ(Point(4), Point(4, 4, 4));
   EXPECT_EQ(Point(), Point(0));
+<<<<<<< HEAD
   Point a(1, 2, 3);
   const Point& readable = a;
   EXPECT_EQ(a.size(), 3u);
@@ -143,6 +124,15 @@ TEST(PointTest, Elements) {
   EXPECT_EQ(std::vector<double>(a.begin(), a.end()),
             (std::vector<double>{1, 7, 3}));
   // By other names.
+=======
+  EXPECT_EQ(std::vector<double>(a.begin(), a.end()),
+            (std::vector<double>{1, 7, 3}));
+  EXPECT_EQ(a.size(), 3u);
+  std::fill(a.begin(), a.end(), 5);
+  EXPECT_EQ(a, Point(5));
+  a.elem[0] = 1, a.elem[1] = 7, a.elem[2] = 3;  // by other names
+  EXPECT_EQ(a, Point(1, 7, 3));
+>>>>>>> files
   EXPECT_EQ(readable.elem[2u], 3);
   EXPECT_EQ(&a.elem[0], &a.x);
   EXPECT_EQ(&a.elem[2l], &a.z);
@@ -221,50 +211,46 @@ TEST(Color, HeatGoesFromVioletOverGreenToRed) {
   }
 }
 
+/** "EMPTY MIN | MAX | CENTER | DIAGONAL" of @a box. */
+std::string text_of(const Box3D& box) {
+  std::ostringstream text;
+  text << box.empty() << ' ' << box.min() << " | " << box.max() << " | "
+       << box.center() << " | " << box.diagonal();
+  return text.str();
+}
 TEST(BoundingBox, HoldsItsPoints) {
   CME212::BoundingBox box;
   EXPECT_TRUE(box.empty());
   EXPECT_EQ(box.center(), Point());
   EXPECT_EQ(box.diagonal(), 0);
   box |= Point(1, 2, 3);
-  EXPECT_FALSE(box.empty());
-  EXPECT_EQ(box.center(), Point(1, 2, 3));
+  EXPECT_EQ(text_of(box), "0 1 2 3 | 1 2 3 | 1 2 3 | 0");
   box |= Point(3, -2, 7);
   box |= Point(2, 0, 4);
-  EXPECT_EQ(box.min(), Point(1, -2, 3));
-  EXPECT_EQ(box.max(), Point(3, 2, 7));
-  EXPECT_EQ(box.center(), Point(2, 0, 5));
-  EXPECT_EQ(box.diagonal(), 6);
-}
-
-TEST(BoundingBox, IsMadeOfOneOrTwoPoints) {
-  EXPECT_TRUE(Box3D().empty());
-  EXPECT_EQ(Box3D(Point(4)).min(), Point(4));
-  EXPECT_EQ(Box3D(Point(4)).max(), Point(4));
-  Box3D box(Point(1, 5, 2), Point(3, 4, 0));
-  EXPECT_EQ(box.min(), Point(1, 4, 0));
-  EXPECT_EQ(box.max(), Point(3, 5, 2));
+  EXPECT_EQ(text_of(box), "0 1 -2 3 | 3 2 7 | 2 0 5 | 6");
+  EXPECT_EQ(text_of(Box3D(Point(4))), "0 4 4 4 | 4 4 4 | 4 4 4 | 0");
+  EXPECT_EQ(text_of({Point(1, 6, 2), Point(3, 4, 1)}),
+            "0 1 4 1 | 3 6 2 | 2 5 1.5 | 3");
 }
 
 TEST(BoundingBox, ContainsPointsAndBoxes) {
   const Box3D box(Point(0), Point(1, 2, 3)), empty;
-  EXPECT_TRUE(box.contains(Point(0)));
-  EXPECT_TRUE(box.contains(Point(1, 2, 3)));
-  EXPECT_TRUE(box.contains(Point(0.5, 1, 2)));
+  for (const Point& p : {Point(0), Point(1, 2, 3), Point(0.5, 1, 2)})
+    EXPECT_TRUE(box.contains(p)) << p;
   for (int i = 0; i < 3; ++i)
     for (double outside : {-0.01, 3.01, std::nan("")}) {
       Point p(0.5);
       p[i] = outside;
       EXPECT_FALSE(box.contains(p)) << p;
     }
-  EXPECT_FALSE(empty.contains(Point(0)));
-  EXPECT_TRUE(box.contains(box));
-  EXPECT_TRUE(box.contains(Box3D(Point(0, 0, 1), Point(1))));
-  EXPECT_FALSE(box.contains(Box3D(Point(0.5), Point(1.5))));
-  EXPECT_FALSE(box.contains(Box3D(Point(-0.5), Point(0.5))));
-  EXPECT_FALSE(Box3D(Point(0.5)).contains(box));
-  EXPECT_TRUE(box.contains(empty) && empty.contains(empty));
-  EXPECT_FALSE(empty.contains(box));
+  for (const Box3D& b : {box, Box3D(Point(0, 0, 1), Point(1)), empty})
+    EXPECT_TRUE(box.contains(b));
+  for (const Box3D& b :
+       {Box3D(Point(0.5), Point(1.5)), Box3D(Point(-0.5), Point(0.5))})
+    EXPECT_FALSE(box.contains(b));
+  EXPECT_FALSE(empty.contains(Point(0)) || empty.contains(box) ||
+               Box3D(Point(0.5)).contains(box));
+  EXPECT_TRUE(empty.contains(empty));
 }
 
 TEST(BoundingBox, LeavesPointsOutThatAreNotFinite) {

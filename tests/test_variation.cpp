@@ -26,6 +26,7 @@
 #include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Trial.hpp"
+#include "tests/Built.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 
@@ -33,13 +34,11 @@ using namespace lab;
 
 namespace {
 
-Model with_sheet(const std::string& sheet) {
-  Model m;
-  m.sheets = {read_sheet(sheet)};
+Model verlet_with(const std::string& sheet) {
+  Model m = with_sheet(sheet);
   m.method = &table::verlet;
   return m;
 }
-void build(Cloth& g, const Model& m) { build_model(g, m, mesh_of(m)); }
 
 /** The sum of all nodes' c [kg/s]. */
 double drag_of(const Model& m, const Cloth& g) {
@@ -63,7 +62,7 @@ TEST(Answers, DistanceIsALengthAndForPositionsTheRootOfTheMeanSquare) {
 }
 
 TEST(Answers, OfAClothOfThreeNodes) {
-  const Model m = with_sheet("");
+  const Model m = verlet_with("");
   Cloth g;
   const Node a = g.add_node(Point(0, 0, 1), {Point(3, 0, 4), 2});
   const Node b = g.add_node(Point(0, 0, -2), {Point(), 1});
@@ -84,7 +83,7 @@ TEST(Answers, OfAClothOfThreeNodes) {
 }
 
 TEST(Answers, StretchIsNeverNegativeAndAnEmptyClothIsFlat) {
-  const Model m = with_sheet("");
+  const Model m = verlet_with("");
   Cloth g;
   EXPECT_EQ(answer(m, g, Measure::drape_height), (Answer{0}));
   EXPECT_EQ(answer(m, g, Measure::max_stretch), (Answer{0}));
@@ -97,8 +96,7 @@ TEST(Answers, StretchIsNeverNegativeAndAnEmptyClothIsFlat) {
 /** Build @a m and lay it as a saddle over its sheets, each (s, t) of [0, 1]^2
  * at (s, 2 t, s t + number of the sheet). */
 Answer positions_on_a_saddle(const Model& m) {
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   unsigned k = 0;
   for (std::size_t number = 0; number < m.sheets.size(); ++number) {
     const auto [n, p] = m.sheets[number].nodes;
@@ -112,7 +110,7 @@ Answer positions_on_a_saddle(const Model& m) {
 }
 
 TEST(Answers, PositionsAreOfTheSamePlacesOnAllGrids) {
-  Model coarse = with_sheet("nodes 2 3"), fine = with_sheet("nodes 20 6");
+  Model coarse = verlet_with("nodes 2 3"), fine = verlet_with("nodes 20 6");
   const Answer a = positions_on_a_saddle(coarse);
   ASSERT_EQ(a.size(), 3u * 9 * 9);
   EXPECT_EQ(Point(a[3], a[4], a[5]), Point(0, 0.25, 0));
@@ -133,9 +131,8 @@ TEST(Answers, PositionsAreOfTheSamePlacesOnAllGrids) {
 double drape_height(unsigned n, unsigned p,
                     const std::function<double(double, double)>& z) {
   const Model m =
-      with_sheet("nodes " + std::to_string(n) + ' ' + std::to_string(p));
-  Cloth g;
-  build(g, m);
+      verlet_with("nodes " + std::to_string(n) + ' ' + std::to_string(p));
+  Cloth g = built(m);
   unsigned k = 0;
   for (unsigned i = 0; i < n; ++i)
     for (unsigned j = 0; j < p; ++j) {
@@ -166,10 +163,9 @@ TEST(Answers, TheLowestPointOfAParaboloidIsTheSameOnAllGrids) {
 
 TEST(Answers, OfATornClothTheLowestNodeCounts) {
   for (bool tears : {false, true}) {
-    Model m = with_sheet("nodes 3 3");
+    Model m = verlet_with("nodes 3 3");
     if (tears) m.tear_strain = 0.5;
-    Cloth g;
-    build(g, m);
+    Cloth g = built(m);
     for (unsigned k = 0; k < 9; ++k) g.node(k).position().z = k / 3 == 2;
     g.node(4).position().z = -0.1;  // beside 0 and 1: lower between the nodes
     const double lowest = answer(m, g, Measure::drape_height)[0];
@@ -197,8 +193,7 @@ TEST(Answers, TheLowestPointIsNotBelowAFloor) {
 TEST(Answers, PositionsOfAMeshAreItsNodes) {
   Model m;
   m.nodes = "data/grid0.nodes", m.tets = "data/grid0.tets";
-  Cloth g;
-  build(g, m);
+  Cloth g = built(m);
   const Answer a = answer(m, g, Measure::positions);
   ASSERT_EQ(a.size(), 75u);
   for (unsigned i = 0; i < 25; ++i)
@@ -208,7 +203,7 @@ TEST(Answers, PositionsOfAMeshAreItsNodes) {
 
 TEST(Answers, AClothThatTearsKeepsNoPositions) {
   for (const Quantity& q : std::span(quantities).first(Measure::pin_force)) {
-    Model m = with_sheet("nodes 3 3");
+    Model m = verlet_with("nodes 3 3");
     m.measure = read_measure(q.name);
     const bool positions = m.measure == Measure::positions;
     EXPECT_NO_THROW(check_question(m));
@@ -226,7 +221,7 @@ TEST(Answers, AClothThatTearsKeepsNoPositions) {
 // ----------------------------------------------------------------------- Runs
 
 TEST(TryOut, EndsAtTheEnd) {
-  Model m = with_sheet("nodes 3 3");  // falls
+  Model m = verlet_with("nodes 3 3");  // falls
   auto steps = [&m](double dt, double t_end) {
     m.step.dt = dt, m.t_end = t_end;
     const Trial t = try_out(m);
@@ -249,7 +244,7 @@ TEST(TryOut, EndsAtTheEnd) {
 }
 
 TEST(TryOut, ChoosesItsStepAsTheSceneDoes) {
-  Model m = with_sheet("nodes 5 5");
+  Model m = verlet_with("nodes 5 5");
   m.step = {.rule = StepRule::safe};
   m.t_end = 0.1;
   const double chosen = Scene(m).dt();
@@ -259,7 +254,7 @@ TEST(TryOut, ChoosesItsStepAsTheSceneDoes) {
 }
 
 TEST(TryOut, SaysWhyItFailed) {
-  Model m = with_sheet("nodes 20 20");
+  Model m = verlet_with("nodes 20 20");
   m.pins = {read_pin("x 0")};
   m.step.dt = 0.02, m.t_end = 2;
   const Trial t = try_out(m);
@@ -271,7 +266,7 @@ TEST(TryOut, SaysWhyItFailed) {
 // ----------------------------------------------------------------- Variations
 
 TEST(Refined, IsTheSameCloth) {
-  Model m = with_sheet("at 1 2 3 u 2 0 0 v 0 0.5 0 nodes 5 4");
+  Model m = verlet_with("at 1 2 3 u 2 0 0 v 0 0.5 0 nodes 5 4");
   m.sheets.push_back(read_sheet("nodes 3 3"));
   m.material.density = 0.3;
   for (bool per_area : {true, false}) {
@@ -279,13 +274,11 @@ TEST(Refined, IsTheSameCloth) {
       m.material.drag = 2;
     else
       m.material.drag.reset(), m.damping = 0.01;
-    Cloth g;
-    build(g, m);
+    Cloth g = built(m);
     const double drag = drag_of(m, g);
     for (double factor : {0.1, 0.5, 1., 1.5, 2., 3.}) {
       const Model r = refined(m, factor);
-      Cloth f;
-      build(f, r);
+      Cloth f = built(r);
       EXPECT_NEAR(total_mass(f), total_mass(g), 1e-14);
       EXPECT_NEAR(drag_of(r, f), drag, 1e-14);
       EXPECT_LT(norm(center_of_mass(f) - center_of_mass(g)), 1e-14);
@@ -342,8 +335,8 @@ TEST(Refining, NeverGivesTheStretchAtAPinnedCorner) {
 }
 
 TEST(Variation, KnowsTheShortestSide) {
-  EXPECT_NEAR(shortest_side(with_sheet("u 3 0 0 nodes 4 6")), 0.2, 1e-15);
-  EXPECT_NEAR(shortest_side(with_sheet("v 0 30 0 nodes 4 6")), 1 / 3., 1e-15);
+  EXPECT_NEAR(shortest_side(verlet_with("u 3 0 0 nodes 4 6")), 0.2, 1e-15);
+  EXPECT_NEAR(shortest_side(verlet_with("v 0 30 0 nodes 4 6")), 1 / 3., 1e-15);
 }
 
 /** @a m without the friction of @a part. */
@@ -354,7 +347,7 @@ Model smooth(const Model& m, const std::string& part) {
 }
 
 TEST(Variation, LeavesOutFriction) {
-  Model m = with_sheet("nodes 5 5");
+  Model m = verlet_with("nodes 5 5");
   for (auto [text, words, left] :
        {std::tuple("friction 0.5", ": friction 0.5", ""),
         {"at 0 0 1 friction 0.5", ": at 0 0 1 friction 0.5", "at 0 0 1"},
@@ -390,7 +383,7 @@ TEST(Variation, NamesADefaultPartByItsKey) {
 
 /** A scene that names everything. */
 Model full_scene() {
-  Model m = with_sheet("nodes 5 5");
+  Model m = verlet_with("nodes 5 5");
   m.edges = {.diagonals = true, .bend = true};
   m.material.density = 1;
   m.material.modulus = 100;
@@ -446,7 +439,7 @@ TEST(Variation, DropsEachPartInTurnAndNothingElse) {
 }
 
 TEST(Variation, KeepsTheGravityOfAnEnergy) {
-  Model m = with_sheet("nodes 5 5");
+  Model m = verlet_with("nodes 5 5");
   auto drops = [&m] {
     return 1 ==
            std::ranges::count(without_parts(m), "gravity", &Variation::part);
@@ -457,7 +450,7 @@ TEST(Variation, KeepsTheGravityOfAnEnergy) {
 }
 
 TEST(Variation, DropsNothingThatIsNotThere) {
-  Model m = with_sheet("nodes 5 5");
+  Model m = verlet_with("nodes 5 5");
   m.edges.diagonals = false;
   m.gravity = 0;
   m.material.drag = 0;

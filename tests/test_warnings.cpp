@@ -9,6 +9,7 @@
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "tests/Built.hpp"
 #include "tests/ReadParts.hpp"
 #include "tests/TestFolder.hpp"
 
@@ -18,15 +19,11 @@ namespace {
 
 /** 5 x 5 nodes, 0.25 m apart: their openings have a radius of 0.1768 m. */
 Model sheet(const std::string& more = "") {
-  Model m;
-  m.sheets = {read_sheet("nodes 5 5 " + more)};
-  return m;
+  return with_sheet("nodes 5 5 " + more);
 }
 std::vector<std::string> warnings_of(const Model& m, double dt = 0.001) {
   const auto mesh = mesh_of(m);
-  Cloth g;
-  build_model(g, m, mesh);
-  return warnings(m, mesh, g, dt);
+  return warnings(m, mesh, built(m, mesh), dt);
 }
 /** The one warning of @a m; what there is, if it is not one. */
 std::string warning_of(const Model& m, double dt = 0.001) {
@@ -102,9 +99,7 @@ TEST(Warnings, OfAMeshFromFiles) {
   const auto of = [](const Net& net, const char* pin) {
     Model m;
     if (*pin) m.pins = {read_pin(pin)};
-    Cloth g;
-    build_model(g, m, net);
-    const auto all = warnings(m, net, g, 0.001);
+    const auto all = warnings(m, net, built(m, net), 0.001);
     return all.empty() ? "" : all[0].substr(0, all[0].find(':'));
   };
   Net net = {grid_points(3), grid_quads(3)};
@@ -121,23 +116,38 @@ TEST(Warnings, OfAMeshFromFiles) {
   Net sewn = {{{0, 0, 0}, {1, 0, 0}}, {}};
   sewn.springs = {{0, 1, 10, 0}};
   EXPECT_EQ(of(sewn, "x 0"), "");
+  // Options that find nothing to change; a net with K and one without.
+  Model m;
+  m.pins = {read_pin("x 0")};
+  const auto with = [&m](const Net& net) {
+    return warnings(m, net, built(m, net), 0.001);
+  };
+  const std::string own =
+      " changes nothing: each spring of the net has its own K";
+  m.stiffness = 50;
+  EXPECT_EQ(with(sewn), std::vector{"--stiffness" + own});
+  m.material.modulus = 3;
+  EXPECT_EQ(with(sewn), std::vector{"--modulus" + own});
+  m.material.modulus.reset(), m.edges.bend = true, sewn.springs[0].K = -1;
+  EXPECT_EQ(with(sewn), std::vector<std::string>{
+                            "--edges changes nothing: no face gives springs"});
+  sewn.quads = {face_around(0, 1, 2)}, sewn.points.push_back({0, 1, 0});
+  EXPECT_EQ(with(sewn).size(), 0u);
+  m.spheres = {read_sphere("at 0 0 -9 radius 0.1")};
+  EXPECT_TRUE(has(with(sewn).at(0), "the openings of 1 of 1 face: "));
 }
 
 TEST(Warnings, SpringsOfLengthZero) {
   Model m = sheet();
   Net mesh = mesh_of(m);
   mesh.points[7] = mesh.points[12];  // one side
-  Cloth g;
-  build_model(g, m, mesh);
-  const auto found = warnings(m, mesh, g, 0.001);
+  const auto found = warnings(m, mesh, built(m, mesh), 0.001);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0],
             "1 spring has length 0: nodes 7 and 12 are at the same point, and "
             "no spring force keeps them apart; make them one node");
   mesh.points[7].z += 1e-6;
-  Cloth apart;
-  build_model(apart, m, mesh);
-  EXPECT_EQ(warnings(m, mesh, apart, 0.001).size(), 0u);
+  EXPECT_EQ(warnings(m, mesh, built(m, mesh), 0.001).size(), 0u);
 }
 
 // ------------------------------------------------------------- What it meets

@@ -21,6 +21,7 @@
 #include "lab/python/Arrays.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/Interrupt.hpp"
+#include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stepping/Settled.hpp"
 
@@ -29,8 +30,7 @@ namespace {
 
 /** @a message as Python shows it: options without their dashes. */
 std::string without_dashes(const std::string& message) {
-  static const std::regex option("--([a-z])");
-  return std::regex_replace(message, option, "$1");
+  return std::regex_replace(message, std::regex("--([a-z])"), "$1");
 }
 
 /** While it lives, Ctrl-C and SIGTERM only end the computation of C++. */
@@ -167,8 +167,8 @@ class Simulation {
     if (t_end) set_field(m, "t-end", {CME212::exact_text(*t_end)});
     const double between = every.value_or(m.t_end);
     if (!(between > 0) && m.t_end > 0)
-      throw SceneError("every", "is " + CME212::short_text(between) +
-                                    ", expected a time [s] above 0");
+      throw SceneError("every", CME212::short_text(between),
+                       "a time [s] above 0");
     if (dt == "auto" && m.method->info.adaptive)
       m.step = {.dt = std::min(between, m.t_end)};
     else if (!dt.empty())
@@ -245,18 +245,20 @@ Simulation make_net(const Array<double>& x, const Array<long long>& edges,
     refuse("edges has shape " + shape_of(edges) + ", expected (e, 2)");
   const auto e = std::size_t(edges.shape(0));
   const auto stiffness = numbers_of(k, "k", e, false);
-  std::vector<double> length;
-  if (L) length = numbers_of(*L, "L", e, false);
-  net.springs.reserve(e);
+  const auto length =
+      L ? numbers_of(*L, "L", e, false) : std::vector<double>(e, -1);
   for (std::size_t s = 0; s < e; ++s) {
     const long long i = edges.data()[2 * s], j = edges.data()[2 * s + 1];
     if (std::min(i, j) < 0 || std::max(i, j) >= (long long)(n) || i == j)
       refuse("edges[" + std::to_string(s) + "] is (" + std::to_string(i) +
              ", " + std::to_string(j) +
              "), expected two different nodes, 0 to " + std::to_string(n - 1));
-    net.springs.push_back(
-        {unsigned(i), unsigned(j), stiffness[s], L ? length[s] : -1});
+    net.springs.push_back({unsigned(i), unsigned(j), stiffness[s], length[s]});
   }
+  join_ends(net);
+  for (const std::string& note : net.notes)
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0)
+      throw py::error_already_set();
   net.masses = mass ? numbers_of(*mass, "mass", n, true)
                     : std::vector<double>(n, 1. / double(n));
   for (py::ssize_t f = 0; f < fixed.size(); ++f) {
@@ -267,10 +269,9 @@ Simulation make_net(const Array<double>& x, const Array<long long>& edges,
     net.held.push_back(unsigned(i));
   }
   Model m;
-  m.name = "net";
+  m.name = "net", m.gravity = gravity;
   m.damping = numbers_of(Array<double>(py::cast(drag)), "drag", 1, false)[0];
   if (!std::isfinite(gravity)) refuse("gravity is not finite");
-  m.gravity = gravity;
   return {std::move(m), std::move(net)};
 }
 

@@ -106,6 +106,12 @@ def test_advice():
     assert a.method in str(a)
 
 
+def test_a_spring_from_both_ends_counts_once():
+    with pytest.warns(UserWarning, match="1 spring is listed from both ends"):
+        net = mass_spring.Net(PAIR, [[0, 1], [1, 0]], k=50.0, gravity=0.0)
+    assert net.force([[0.0, 0, 0], [3, 0, 0]], np.zeros((2, 3)))[1, 0] == -100
+
+
 @pytest.mark.parametrize("changes, message", [
     ({"x": [[0.0, 0], [1, 0]]}, r"x has shape (2, 2), expected (n, 3)"),
     ({"x": [[0.0, 0, 0], [np.nan, 0, 0]]}, "x[1] is not finite"),

@@ -85,9 +85,8 @@ Film::Film(const Scene& scene, Run& run, const Options& o)
   if (o.video.empty()) return;
   constexpr double day = 86400;  // [s]
   if (o.model.t_end > day)
-    throw SceneError("t-end", "is " + short_text(o.model.t_end) +
-                                  ", expected at most " + short_text(day) +
-                                  " s (a day) for a film");
+    throw SceneError("t-end", short_text(o.model.t_end),
+                     "at most " + short_text(day) + " s (a day) for a film");
   screen_->start_film(o.video);
   if (scene.time() == 0) screen_->show_card(title());
 }

@@ -91,12 +91,9 @@ class Help : public CLI::Formatter {
 
 /** Throws SceneError: an option that can't be used. */
 void check(Options& o) {
-  using CME212::short_text;
   auto require = [](bool ok, const char* option, double value,
                     const char* expected) {
-    if (!ok)
-      throw SceneError(option,
-                       "is " + short_text(value) + ", expected " + expected);
+    if (!ok) throw SceneError(option, CME212::short_text(value), expected);
   };
   require(o.speed >= 0, "speed", o.speed, "0 or more");
   require(o.slow_motion >= 1 && o.slow_motion <= 100, "slow-motion",
@@ -109,8 +106,7 @@ void check(Options& o) {
     std::string known(endings.front());
     for (std::string_view e : endings.subspan(1))
       known += (e == endings.back() ? " or " : ", ") + std::string(e);
-    throw SceneError(option,
-                     "is " + file + ", expected a name that ends in " + known);
+    throw SceneError(option, file, "a name that ends in " + known);
   };
   require_ending("screenshot", o.screenshot,
                  std::array{std::string_view(".png")});
@@ -124,23 +120,21 @@ void check(Options& o) {
       return a % 2 == 0 && 64 <= a && a < 8192;
     };
     if (read != 3 || x != 'x' || !is_good(width) || !is_good(height))
-      throw SceneError("size", "is " + o.size +
-                                   ", expected WIDTHxHEIGHT, even numbers of "
-                                   "pixels from 64 to 8190");
+      throw SceneError("size", o.size,
+                       "WIDTHxHEIGHT, even numbers of pixels from 64 to 8190");
   }
   if (CME212::ending_of(o.out) == ".tets")
-    throw SceneError("out", "is " + o.out +
-                                ", expected a file of points, such as "
-                                "FILE.nodes: the quads go into FILE.tets");
+    throw SceneError("out", o.out,
+                     "a file of points, such as FILE.nodes: the quads go into "
+                     "FILE.tets");
   const Model& m = o.model;
   if (!o.out.empty() && CME212::ending_of(o.out) != ".net" &&
       (needs_net(m.net + m.nodes, m.tets) ||
        std::ranges::any_of(m.sheets, [](const Sheet& s) {
          return s.nodes[0] == 1 || s.nodes[1] == 1;
        })))
-    throw SceneError("out", "is " + o.out +
-                                ", expected a name that ends in .net: other "
-                                "files hold quads alone");
+    throw SceneError("out", o.out,
+                     "a name that ends in .net: other files hold quads alone");
   require(o.frame_rate > 0 && std::isfinite(o.frame_rate), "frame-rate",
           o.frame_rate, "more than 0 frames a second");
   require(o.advise_work >= 0 && std::isfinite(o.advise_work), "advise-work",
@@ -339,7 +333,7 @@ int report(const CLI::App& app, const CLI::ParseError& e) {
   for (std::string word : words) {
     word = word.substr(0, word.find('='));
     if (!word.starts_with("-") || std::ranges::count(names, word)) continue;
-    const std::string meant = did_you_mean(word, names);
+    const std::string meant = key_instead_of(word, names);
     message =
         word + " is not an option" + (meant.empty() ? ": see --help" : meant);
     break;

@@ -128,11 +128,6 @@ concept Optional = requires(T a) {
   a.emplace();
 };
 
-[[noreturn]] void refuse(const char* name, const std::string& value,
-                         const std::string& expected) {
-  throw SceneError(name, "is " + value + ", expected " + expected);
-}
-
 template <typename T>
 void read(const Field& f, const std::string& text, T& a) {
   if constexpr (List<T>) {
@@ -149,14 +144,15 @@ void read(const Field& f, const std::string& text, T& a) {
     if (text.empty() || *end != '\0' || !std::isfinite(a) ||
         (f.range != Word::Range::any && a < 0) ||
         (f.range == Word::Range::positive && a == 0))
-      refuse(f.name, printable(text), f.expected);
+      throw SceneError(f.name, printable(text), f.expected);
   } else if constexpr (std::is_same_v<T, std::string>) {
     a = text;
     if (a.empty())
       throw SceneError(f.name, std::string("is empty, expected ") +
                                    (*f.expected ? f.expected : "a file name"));
     if (!is_utf8(a))
-      refuse(f.name, printable(a), "a name in UTF-8, as scene files are");
+      throw SceneError(f.name, printable(a),
+                       "a name in UTF-8, as scene files are");
   } else if constexpr (std::is_same_v<T, TimeStep>) {
     a = read_time_step(text);
   } else if constexpr (std::is_same_v<T, Measure>) {
@@ -214,17 +210,22 @@ bool set_field(Model& m, std::string_view name,
   const auto all = fields_of(m);
   const auto field = std::ranges::find(all, name, &Field::name);
   if (field == all.end()) return false;
-  if (values.size() > 1 && !field->repeats())
-    throw SceneError(field->name, "has " + std::to_string(values.size()) +
-                                      " values, expected one");
   const auto clear = [](auto* a) {
     using T = std::remove_pointer_t<decltype(a)>;
     if constexpr (List<T> || Optional<T>) *a = T();
   };
   for (const Field& f : all)
     if (f.name == name || f.instead_of == name) std::visit(clear, f.member);
+  std::string all_words;  // [0, 0, -9.81] is the vector "0 0 -9.81"
   for (const std::string& value : values)
+    all_words += (all_words.empty() ? "" : " ") + value;
+  const auto take = [&](const std::string& value) {
     std::visit([&](auto* a) { read(*field, value, *a); }, field->member);
+  };
+  if (field->repeats())
+    std::ranges::for_each(values, take);
+  else
+    take(all_words);
   return true;
 }
 
@@ -234,10 +235,10 @@ void check_step(Model& m) {
   const bool fixed = m.step.fixed();
   if (fixed && dt == TimeStep().dt && m.t_end > 0) dt = std::min(dt, m.t_end);
   if (fixed && dt > m.t_end && m.t_end > 0)
-    refuse("dt", CME212::short_text(dt), "at most --t-end");
+    throw SceneError("dt", CME212::short_text(dt), "at most --t-end");
   if (fixed && !(m.t_end / dt < 1e15))
-    refuse("t-end", CME212::short_text(m.t_end),
-           "fewer than 1e15 steps of --dt");
+    throw SceneError("t-end", CME212::short_text(m.t_end),
+                     "fewer than 1e15 steps of --dt");
 }
 
 Model checked(Model m) {

@@ -1,53 +1,40 @@
 #include "lab/scenes/MeshFile.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "CME212/MeshFaults.hpp"
 #include "CME212/Util.hpp"
 #include "lab/scenes/NetFile.hpp"
+#include "lab/scenes/NetParsing.hpp"
 
 namespace lab {
 
 Net parse_nodes(std::string_view text, const std::string& file) {
-  const std::string three = "three finite coordinates 'x y z' [m]";
-  const std::string six =
-      "six finite numbers 'x y z vx vy vz' [m, m/s], as in the first line";
+  using namespace net_parsing;
   Net mesh;
   std::size_t columns = 0;  // of all lines; 0: not known yet
-  auto expected = [&] {
-    return columns == 0   ? three + ", and three of a velocity [m/s] or none"
-           : columns == 3 ? three
-                          : six;
+  const auto use = [&](net_parsing::Words w) {
+    const std::size_t n = w.size();
+    if (columns == 0 ? n != 3 && n != 6 : n != columns)
+      fail(CME212::count_of(n, "value") + " in the line");
+    mesh.points.push_back(point(w, 0));
+    if (n == 6) mesh.velocities.push_back(point(w, 3));
+    columns = n;
   };
-  const std::size_t lines =
-      mesh_detail::for_each_line(text, [&](auto& words, std::size_t line) {
-        try {
-          std::array<double, 6> row{};
-          for (std::size_t k = 0; k < std::min(row.size(), words.size()); ++k) {
-            row[k] = mesh_detail::parse_number<double>(words[k], "a number");
-            if (!std::isfinite(row[k]))
-              throw std::runtime_error(k < 3 ? "a coordinate is not finite"
-                                             : "a velocity is not finite");
-          }
-          const std::size_t n = words.size();
-          if (columns == 0 ? n != 3 && n != 6 : n != columns)
-            throw std::runtime_error(CME212::count_of(n, "value") +
-                                     " in the line");
-          columns = n;
-          mesh.points.push_back({row[0], row[1], row[2]});
-          if (n == 6) mesh.velocities.push_back({row[3], row[4], row[5]});
-        } catch (const std::runtime_error& e) {
-          throw InputError(file, line, e.what() + (", expected " + expected()));
-        }
-      });
+  const auto expected = [&]() -> std::string {
+    return columns == 6
+               ? "six finite numbers 'x y z vx vy vz' [m, m/s], as in the "
+                 "first line"
+               : std::string("three finite coordinates 'x y z' [m]") +
+                     (columns == 0 ? ", and three of a velocity [m/s] or none"
+                                   : "");
+  };
+  each_line(text, file, use, expected);
   if (columns == 0)
-    throw InputError(file, lines,
-                     "nothing in the file, expected " + expected());
+    throw InputError(file, 0, "nothing in the file, expected " + expected());
   return mesh;
 }
 
@@ -81,6 +68,13 @@ std::vector<std::array<unsigned, N>> load_cells(const std::string& file,
   }
 }
 
+/** Note that @a n of these are listed more often than they count. */
+void note_once(Net& net, std::size_t n, const char* what, const char* how) {
+  if (n > 0)
+    net.notes.push_back(CME212::count_of(n, what) + (n == 1 ? " is" : " are") +
+                        " listed " + how + ": each counts once");
+}
+
 }  // namespace
 
 Net load_mesh(const std::string& nodes, const std::string& cells) {
@@ -103,18 +97,23 @@ Net load_mesh(const std::string& nodes, const std::string& cells) {
                           "a b c d, with the sides ab, ac, bd and cd");
     }
   }
-  if (const auto again = repeated(net.quads); !again.empty()) {
-    std::vector<char> is_again(net.quads.size());
-    for (unsigned k : again) is_again[k] = 1;
-    std::vector<Quad> once;
-    for (std::size_t k = 0; k < net.quads.size(); ++k)
-      if (!is_again[k]) once.push_back(net.quads[k]);
-    net.quads = std::move(once);
-    net.notes.push_back(CME212::count_of(again.size(), "face") +
-                        (again.size() == 1 ? " is" : " are") +
-                        " listed twice: each counts once");
-  }
+  const auto again = repeated(net.quads);
+  for (unsigned k : again) net.quads[k][1] = net.quads[k][0];
+  std::erase_if(net.quads, [](const Quad& q) { return q[1] == q[0]; });
+  note_once(net, again.size(), "face", "twice");
+  join_ends(net);
   return net;
+}
+
+void join_ends(Net& net) {
+  std::vector<Spring> forward;
+  for (const Spring& s : net.springs)
+    if (s.i < s.j) forward.push_back(s);
+  std::ranges::sort(forward);
+  const auto n = std::erase_if(net.springs, [&](const Spring& s) {
+    return std::ranges::binary_search(forward, Spring{s.j, s.i, s.K, s.L});
+  });
+  note_once(net, n, "spring", "from both ends");
 }
 
 bool needs_net(const std::string& nodes, const std::string& cells) {

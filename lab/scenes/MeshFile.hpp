@@ -19,10 +19,15 @@ Net parse_nodes(std::string_view text, const std::string& file);
 
 /** The mesh in the files @a nodes and @a cells: quads; by the ending .tris,
  * triangles; .edges, springs. Without @a cells, parse_net() of one file. Quads
- * listed around get the order of Quad, faces listed twice count once, indices
- * that start at 1 are made to start at 0: Net::notes.
+ * listed around get the order of Quad, faces listed twice and springs listed
+ * from both ends count once, indices that start at 1 are made to start at 0:
+ * Net::notes.
  * Throws InputError, also if one can't be read. */
 Net load_mesh(const std::string& nodes, const std::string& cells);
+/** Of two equal springs of @a net, one from i to j and one from j to i, as a
+ * matrix of neighbors has them, leave the one with i < j; a note says how many
+ * others were there.  O(springs log springs) */
+void join_ends(Net& net);
 /** True if the springs of a cloth from @a nodes and @a cells are not those of
  * quads, so that write_quads() can't hold them. */
 bool needs_net(const std::string& nodes, const std::string& cells);

@@ -21,6 +21,9 @@ struct MethodEntry;  // lab/methods/Method.hpp
 struct SceneError : std::runtime_error {
   SceneError(const std::string& option, const std::string& what)
       : std::runtime_error("--" + option + " " + what) {}
+  SceneError(const std::string& option, const std::string& value,
+             const std::string& expected)
+      : SceneError(option, "is " + value + ", expected " + expected) {}
 };
 
 /** How the step is chosen. */

@@ -46,4 +46,18 @@ std::string did_you_mean(std::string_view name, const Names& names) {
   return found.empty() ? "" : ": did you mean " + found + "?";
 }
 
+/** did_you_mean(); of a key or option of other programs, what stands for it. */
+template <typename Names>
+std::string key_instead_of(std::string_view name, const Names& names) {
+  constexpr const char* others[][2] = {
+      {"mass", "density, or masses in a .net file"},
+      {"friction", "the word friction of plane, sphere and self-collision"},
+      {"iterations", "dt: xpbd has ten substeps a step, of one iteration each"},
+      {"substeps",
+       "dt: xpbd has ten substeps a step, other methods have none"}};
+  for (const auto& [other, here] : others)
+    if (name.ends_with(other)) return std::string(": expected ") + here;
+  return did_you_mean(name, names);
+}
+
 }  // namespace lab

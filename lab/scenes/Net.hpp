@@ -2,6 +2,7 @@
 /** @file Net.hpp
  * Net: what a cloth is built from, as plain data: nodes, faces and springs. */
 #include <cmath>
+#include <compare>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct Spring {
   unsigned i, j;
   double K = -1;  ///< [N/m]; negative: as the scene gives it to its springs
   double L = -1;  ///< rest length [m]; negative: the distance of i and j
+  auto operator<=>(const Spring&) const = default;
 };
 
 /** Nodes, and what joins them. */
@@ -48,6 +50,7 @@ struct Net {
   bool bare_faces = false;
   /** Changes that a reader made to the mesh of a file, a sentence each. */
   std::vector<std::string> notes = {};
+  bool operator==(const Net&) const = default;
 };
 
 }  // namespace lab

@@ -2,6 +2,7 @@
  * Readers of nets in formats that may be binary: STL, PLY. */
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -53,19 +54,23 @@ const Kind& kind_of(std::string_view name) {
 
 }  // namespace
 
-Net parse_stl(std::string_view text, const std::string& file) {
-  Builder b;
-  std::vector<long long> nodes;
+void parse_stl(std::string_view text, const std::string& file, Builder& b) {
+  std::vector<long long> nodes;  // of a facet that is not finished
   const auto corner = [&](const Point& p) {
     nodes.push_back((long long)b.net.points.size());
     b.net.points.push_back(p);
-    if (nodes.size() < 3) return;
-    b.face(nodes), nodes.clear();
   };
+  const auto end_facet = [&] { b.face(nodes), nodes.clear(); };
   constexpr std::size_t head = 84, facet = 50;
-  const std::size_t n =
-      text.size() < head ? 0 : raw<std::uint32_t>(text.data() + 80, big);
-  if (n > 0 && text.size() == head + n * facet) {
+  if (text.size() >= head && text.find('\0') < text.npos) {
+    const std::size_t n = raw<std::uint32_t>(text.data() + 80, big),
+                      whole_ones = (text.size() - head) / facet;
+    if (whole_ones < n)
+      throw InputError(file, 0,
+                       "announces " + CME212::count_of(n, "triangle") +
+                           ", of which " + std::to_string(whole_ones) +
+                           (whole_ones == 1 ? " is" : " are") +
+                           " there, expected a whole file");
     for (std::size_t k = 0; k < 3 * n; ++k) {
       const char* from = text.data() + head + k / 3 * facet + 12 * (k % 3 + 1);
       Point p;
@@ -75,23 +80,33 @@ Net parse_stl(std::string_view text, const std::string& file) {
                          "facet " + std::to_string(k / 3) +
                              " is not finite, expected numbers");
       corner(p);
+      if (k % 3 == 2) end_facet();
     }
-    return std::move(b.net);
+    if (const auto left = text.size() - head - n * facet; left > 0)
+      b.skip(CME212::count_of(left, "byte") + " behind the last triangle");
+    return;
   }
-  bool is_stl = false;
+  bool is_stl = false, ends = false;
   const auto use = [&](Words w) {
-    if (!std::exchange(is_stl, true) && w[0] != "solid")
+    std::string name(w[0]);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) {
+      return char(std::tolower(c));
+    });
+    if (!std::exchange(is_stl, true) && name != "solid")
       fail(quoted(w[0]) + " begins the file");
-    if (w[0] == "vertex") corner(point(w, 1));
-    if (w[0] == "endloop" && !nodes.empty()) fail("a facet of another number");
+    if (name == "vertex") corner(point(w, 1));
+    if (name == "endloop") end_facet();
+    if (name.ends_with("solid")) ends = name == "endsolid";
   };
   const std::string expected =
-      "an STL file of triangles: 'solid', then 'vertex x y z' three times a "
-      "facet; or a binary one";
+      "an STL file of triangles: 'solid', 'vertex x y z' three times a facet, "
+      "'endsolid'; or a binary one";
   each_line(text, file, use, [&] { return expected; });
-  if (!nodes.empty())
-    throw InputError(file, 0, "ends early, expected " + expected);
-  return std::move(b.net);
+  if (!ends)
+    throw InputError(file, 0,
+                     "ends early, behind " +
+                         CME212::count_of(b.net.points.size() / 3, "triangle") +
+                         ", expected " + expected);
 }
 
 // ------------------------------------------------------------------------ ply
@@ -100,7 +115,8 @@ namespace {
 
 class Ply {
  public:
-  Ply(std::string_view text, const std::string& file) : file_(file) {
+  Ply(std::string_view text, const std::string& file, Builder& b)
+      : file_(file), b_(b) {
     header(text);
     const auto check = [&](const std::string& what, auto read) {
       try {
@@ -110,8 +126,7 @@ class Ply {
         throw InputError(
             file_,
             ascii_ ? 1 + std::size_t(std::ranges::count(read_so_far, '\n')) : 0,
-            what + error.what() + ", expected numbers as in the header, and " +
-                corners);
+            what + error.what() + ", expected numbers as in the header");
       }
     };
     for (const Element& e : elements_)
@@ -121,7 +136,6 @@ class Ply {
       if (rest_.find_first_not_of(" \t\r\n") != rest_.npos) fail("more data");
     });
   }
-  Net net() && { return std::move(b_.net); }
 
  private:
   struct Property {
@@ -133,11 +147,13 @@ class Ply {
     std::size_t count;
     std::vector<Property> properties;
   };
+  static constexpr std::string_view known[] = {"vertex", "face", "edge",
+                                               "tristrips"};
   std::string file_;
   std::vector<Element> elements_;
   bool ascii_ = false, swap_ = false;
   std::string_view rest_;
-  Builder b_;
+  Builder& b_;
 
   void header(std::string_view text) {
     const auto end = text.find("end_header");
@@ -157,8 +173,11 @@ class Ply {
                 w[1] != "binary_little_endian")
               fail(quoted(w[1]) + " is no format");
           } else if (w[0] == "element" && w.size() == 3) {
-            elements_.push_back(
-                {w[1], std::size_t(std::max(0LL, whole(w[2]))), {}});
+            const auto count = std::size_t(std::max(0LL, whole(w[2])));
+            elements_.push_back({w[1], count, {}});
+            if (w[1] == "vertex") b_.announced += count;
+            if (count > 0 && std::ranges::count(known, w[1]) == 0)
+              b_.skip(quoted(w[1]));
           } else if (w[0] == "property" && !elements_.empty() &&
                      (w.size() == 3 || (w.size() == 5 && w[1] == "list"))) {
             elements_.back().properties.push_back(
@@ -197,8 +216,15 @@ class Ply {
         std::vector<long long> nodes;
         for (auto left = index_of(next(*p.count)); left > 0; --left)
           nodes.push_back(index_of(next(*p.kind)));
-        if (e.name == "face" && p.name.starts_with("vertex_ind"))
-          b_.face(nodes);
+        if (!p.name.starts_with("vertex_ind")) continue;
+        if (e.name == "face") b_.face(nodes);
+        // Each node with the two before it; -1 begins another strip.
+        std::size_t from = 0;
+        for (std::size_t k = 0; e.name == "tristrips" && k < nodes.size(); ++k)
+          if (nodes[k] == -1)
+            from = k + 1;
+          else if (k >= from + 2)
+            b_.face(std::span(nodes).subspan(k - 2, 3));
         continue;
       }
       const double a = next(*p.kind);
@@ -219,8 +245,8 @@ class Ply {
 
 }  // namespace
 
-Net parse_ply(std::string_view text, const std::string& file) {
-  return Ply(text, file).net();
+void parse_ply(std::string_view text, const std::string& file, Builder& b) {
+  Ply(text, file, b);
 }
 
 }  // namespace lab::net_parsing

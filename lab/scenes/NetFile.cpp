@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "CME212/MeshFaults.hpp"
 #include "lab/scenes/NetParsing.hpp"
 
 namespace lab {
@@ -15,7 +16,8 @@ namespace {
 
 // ------------------------------------------------------------------------ net
 
-Net parse_net_lines(std::string_view text, const std::string& file) {
+void parse_net_lines(std::string_view text, const std::string& file,
+                     Builder& b) {
   struct Form {
     const char *name, *expected;
   };
@@ -26,11 +28,9 @@ Net parse_net_lines(std::string_view text, const std::string& file) {
       {"spring",
        "'spring i j', nodes of lines above, then K [N/m], then the "
        "rest length [m]"},
-      {"face",
-       "'face i j k' or 'face i j k l', different nodes of lines above"},
+      {"face", "'face i j k', its nodes around, of lines above"},
       {"bare-faces", "'bare-faces' alone"}};
   const Form* form = nullptr;
-  Builder b;
   Net& net = b.net;
   const auto use = [&](Words w) {
     form = std::ranges::find(forms, w[0], &Form::name);
@@ -87,13 +87,14 @@ Net parse_net_lines(std::string_view text, const std::string& file) {
   if (!net.masses.empty()) net.masses.resize(net.points.size());
   for (double& m : net.masses)
     if (m == 0) m = 1 / double(net.points.size());
-  return std::move(net);
 }
 
 // ------------------------------------------------------------------------ obj
 
-Net parse_obj(std::string_view text, const std::string& file) {
-  Builder b;
+void parse_obj(std::string_view text, const std::string& file, Builder& b) {
+  // Lines that hold no shape.
+  constexpr std::string_view others[] = {
+      "vt", "vn", "g", "s", "o", "mg", "usemtl", "mtllib", "usemap", "maplib"};
   b.first = 1;
   const auto use = [&](Words w) {
     // "7", "7/1", "7//2", "-1/1/1": the node is the first; from 1, or from the
@@ -105,30 +106,39 @@ Net parse_obj(std::string_view text, const std::string& file) {
       return i > 0 ? i - 1 : n + i;
     };
     std::vector<long long> nodes;
+    const bool is_line = w[0] == "l";
     if (w[0] == "v") {
       b.net.points.push_back(point(w, 1));
-    } else if (w[0] == "f" || w[0] == "l") {
+    } else if (is_line || w[0] == "f" || w[0] == "fo") {  // fo: a name of old
       for (auto word : w.subspan(1)) nodes.push_back(node(word));
-      if (w[0] == "f") b.face(nodes);
-      for (std::size_t k = 1; w[0] == "l" && k < nodes.size(); ++k)
+      if (!is_line) b.face(nodes);
+      for (std::size_t k = 1; is_line && k < nodes.size(); ++k)
         b.spring(nodes[k - 1], nodes[k]);
+    } else if (std::ranges::count(others, w[0]) == 0) {
+      b.skip(quoted(w[0]));
     }
   };
   each_line(text, file, use, [] {
-    return "'v x y z', and " + corners + " of lines above, from 1 on";
+    return std::string(
+        "'v x y z', and faces 'f i j k' of lines above, from 1 on");
   });
-  return std::move(b.net);
 }
 
 // ------------------------------------------------------------------------ off
 
-Net parse_off(std::string_view text, const std::string& file) {
-  Builder b;
+void parse_off(std::string_view text, const std::string& file, Builder& b) {
   long long left[2] = {-1, -1};  // points and faces
   const auto use = [&](Words w) {
+    std::vector<std::string_view> words(w.begin(), w.end());
+    if (const auto mark = w[0].find("OFF"); left[0] < 0 && mark < w[0].npos) {
+      if (w[0].substr(0, mark).find_first_not_of("STCN") < mark)
+        fail(quoted(w[0]) + " begins the file");
+      words[0].remove_prefix(mark + 3);
+      if (words[0].empty()) words.erase(words.begin());
+      w = words;
+    }
+    if (w.empty()) return;
     if (left[0] < 0) {
-      if (w[0].ends_with("OFF")) w = w.subspan(1);
-      if (w.empty()) return;
       if (w.size() < 2) fail("one number in the line");
       for (int k : {0, 1})
         if ((left[k] = whole(w[k])) < 0) fail("a number below 0");
@@ -146,88 +156,129 @@ Net parse_off(std::string_view text, const std::string& file) {
     }
   };
   const std::string expected =
-      "'OFF', the numbers of nodes and faces, as many lines 'x y z', and " +
-      corners + " as '3 i j k' or '4 i j k l'";
+      "'OFF', the numbers of nodes and faces, as many lines 'x y z' and '3 i j "
+      "k'";
   each_line(text, file, use, [&] { return expected; });
   if (left[0] != 0 || left[1] != 0)
     throw InputError(file, 0, "ends early, expected " + expected);
-  return std::move(b.net);
-}
-
-// ------------------------------------------------------------------- Formats
-
-/** Make nodes at the same place one node, and drop faces that then have no
- * area.
- * @return how many nodes are gone */
-std::size_t weld(Net& net) {
-  std::map<std::array<double, 3>, unsigned> at;
-  std::vector<unsigned> now;
-  std::vector<Point> points, velocities;
-  for (const Point& p : net.points) {
-    const auto [it, is_new] =
-        at.try_emplace({p.x, p.y, p.z}, unsigned(points.size()));
-    now.push_back(it->second);
-    if (!is_new) continue;
-    points.push_back(p);
-    if (!net.velocities.empty())
-      velocities.push_back(net.velocities[now.size() - 1]);
-  }
-  if (points.size() == now.size()) return 0;
-  std::vector<Quad> quads;
-  for (const Quad& q : net.quads) {
-    std::vector<unsigned> around;
-    for (unsigned k : {0u, 2u, 3u, 1u})
-      if (std::ranges::count(around, now[q[k]]) == 0)
-        around.push_back(now[q[k]]);
-    if (around.size() > 2)
-      quads.push_back(face_around(around[0], around[1], around[2],
-                                  around[around.size() - 1]));
-  }
-  for (Spring& s : net.springs) s.i = now[s.i], s.j = now[s.j];
-  std::erase_if(net.springs, [](const Spring& s) { return s.i == s.j; });
-  net.points = std::move(points), net.velocities = std::move(velocities);
-  net.quads = std::move(quads);
-  return now.size() - net.points.size();
 }
 
 }  // namespace
+
+// -------------------------------------------------------------------- Builder
+
+void Builder::weld(bool says_so) {
+  std::vector<unsigned> now = first_at_place(net.points);
+  std::vector<Point> points, velocities;
+  for (unsigned i = 0; i < now.size(); ++i) {
+    const bool stays = now[i] == i;
+    now[i] = stays ? unsigned(points.size()) : now[now[i]];
+    if (!stays) continue;
+    points.push_back(net.points[i]);
+    if (!net.velocities.empty()) velocities.push_back(net.velocities[i]);
+  }
+  const std::size_t before = now.size(), gone = before - points.size();
+  if (gone == 0) return;
+  for (unsigned& c : corners_) c = now[c];
+  for (Spring& s : net.springs) s.i = now[s.i], s.j = now[s.j];
+  std::erase_if(net.springs, [](const Spring& s) { return s.i == s.j; });
+  net.points = std::move(points), net.velocities = std::move(velocities);
+  if (says_so)
+    net.notes.push_back(
+        std::to_string(gone) + " of " + CME212::count_of(before, "node") +
+        " lie at the same point as another one, to 1e-6 of the size, as where "
+        "an export splits seams: they are one node now, and indices are those "
+        "of " +
+        CME212::count_of(net.points.size(), "node"));
+}
+
+Net Builder::made() && {
+  std::size_t flat = 0, fans = 0;
+  const auto p = [&](unsigned i) { return net.points[i]; };
+  for (std::span<const unsigned> rest(corners_); std::size_t size : sizes_) {
+    std::vector<unsigned> c;  // corners, without one that follows itself
+    for (unsigned i : rest.first(size))
+      if (c.empty() || c.back() != i) c.push_back(i);
+    rest = rest.subspan(size);
+    while (c.size() > 1 && c.back() == c[0]) c.pop_back();
+    const std::size_t n = c.size(), before = net.quads.size();
+    if (n == 4 && c[0] != c[2] && c[1] != c[3]) {
+      net.quads.push_back(face_around(c[0], c[1], c[2], c[3]));
+      continue;
+    }
+    // A fan of triangles, from the corner that gives it the least area: that
+    // of the face, if its other corners can be seen from there.
+    const auto fan = [&](std::size_t from, auto use) {
+      for (std::size_t k = 1; k + 1 < n; ++k)
+        use(c[from], c[(from + k) % n], c[(from + k + 1) % n]);
+    };
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t from = 0; n > 4 && from < std::min<std::size_t>(n, 64);
+         ++from) {
+      double area = 0;
+      fan(from, [&](unsigned i, unsigned j, unsigned k) {
+        area += norm(cross(p(j) - p(i), p(k) - p(i)));
+      });
+      if (area < least * (1 - 1e-9)) least = area, best = from;
+    }
+    fan(best, [&](unsigned i, unsigned j, unsigned k) {
+      if (i != j && i != k) net.quads.push_back(face_around(i, j, k));
+    });
+    flat += net.quads.size() == before, fans += n > 4;
+  }
+  const auto say = [&](std::size_t n, const char* what, const char* now) {
+    if (n > 0)
+      net.notes.push_back(CME212::count_of(n, "face") + what +
+                          (n == 1 ? ": it is " : ": they are ") + now);
+  };
+  say(flat, " with fewer than three different corners", "left out");
+  say(fans, " with more than four corners", "read as triangles in a fan");
+  if (!skipped.empty()) net.notes.push_back(skipped);
+  return std::move(net);
+}
+
 }  // namespace net_parsing
+
+// -------------------------------------------------------------------- Formats
 
 Net parse_net(std::string_view text, const std::string& file) {
   using namespace net_parsing;
   struct Format {
     const char* ending;
-    Net (*parse)(std::string_view, const std::string&);
-    enum { as_it_is, seams, triangles } nodes;  // of which it repeats some
+    void (*parse)(std::string_view, const std::string&, Builder&);
+    bool welds = true, says_so = true;
   };
-  constexpr Format formats[] = {{".net", parse_net_lines, Format::as_it_is},
-                                {".obj", parse_obj, Format::seams},
-                                {".off", parse_off, Format::seams},
-                                {".ply", parse_ply, Format::seams},
-                                {".stl", parse_stl, Format::triangles}};
+  constexpr Format formats[] = {{".net", parse_net_lines, false},
+                                {".obj", parse_obj},
+                                {".off", parse_off},
+                                {".ply", parse_ply},
+                                {".stl", parse_stl, true, false}};
   const std::string ending = CME212::ending_of(file);
-  std::string known;
-  for (const Format& f : formats) {
-    known += (known.empty() ? "" : ", ") + std::string(f.ending);
-    if (ending != f.ending) continue;
-    Net net = f.parse(text, file);
-    if (net.points.empty())
-      throw InputError(file, 0, "has no node, expected a mesh or a net");
-    if (f.nodes == Format::as_it_is) return net;
-    const std::size_t before = net.points.size(), gone = weld(net);
-    if (f.nodes == Format::seams && gone > 0)
-      net.notes.push_back(
-          std::to_string(gone) + " of " + CME212::count_of(before, "node") +
-          " lie at the same point as another one, as where an export splits "
-          "seams: they are one node now, and indices are those of " +
-          CME212::count_of(net.points.size(), "node"));
-    return net;
+  const auto format = std::ranges::find(formats, ending, &Format::ending);
+  if (format == std::end(formats)) {
+    std::string known;
+    for (const Format& f : formats)
+      known += (known.empty() ? "" : ", ") + std::string(f.ending);
+    throw InputError(file, 0,
+                     "expected a name that ends in one of " + known +
+                         (ending == ".vtp" ? "; ParaView writes .ply: File, "
+                                             "Save Data"
+                                           : ""));
   }
-  throw InputError(file, 0,
-                   "expected a name that ends in one of " + known +
-                       (ending == ".vtp" ? "; ParaView writes .ply: File, "
-                                           "Save Data"
-                                         : ""));
+  Builder b;
+  format->parse(text, file, b);
+  if (format->welds) b.weld(format->says_so);
+  const std::size_t n = b.net.points.size();
+  Net net = std::move(b).made();
+  if (!net.quads.empty() || !net.springs.empty()) return net;
+  if (!format->welds && n > 0) return net;
+  throw InputError(
+      file, 0,
+      "has " + (n == 0 ? "no node" : CME212::count_of(n, "node")) +
+          (n == 0 ? "" : ", but no face and no line between them") +
+          (b.skipped.empty() ? "" : "; ") + b.skipped +
+          ", expected a mesh or a net");
 }
 
 void write_net(std::ostream& out, const Net& net) {

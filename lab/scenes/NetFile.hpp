@@ -11,16 +11,18 @@ namespace lab {
 
 /** The net in @a text, the content of @a file, by the ending of its name:
  *  - .net: write_net()
- *  - .obj: v, f of three or four corners, l (springs)
+ *  - .obj: v, f, l (springs)
  *  - .off
- *  - .ply: ASCII or binary; x y z, vx vy vz of vertex, lists of face, vertex1
- *    and vertex2 of edge (springs)
- *  - .stl: ASCII or binary; its corners at the same place are one node
+ *  - .ply: ASCII or binary; x y z, vx vy vz of vertex, lists of face and
+ *    tristrips, vertex1 and vertex2 of edge (springs)
+ *  - .stl: ASCII or binary
+ * Notes say which nodes were made one, which faces were left out or are a fan
+ * of triangles, and what was not read.
  * By hand: Assimp 5.2.5 gives coordinates in single precision, numbers the
  * nodes of .obj by their faces, names no line, takes a .ply whose face has a
  * node that is not there, and reads no velocities; OpenMesh has no springs.
- * Throws InputError: a wrong line; faces of more than four corners; an index
- * without a node; an ending that is none of these */
+ * Throws InputError: a wrong line; an index without a node; a mesh without a
+ * face or a spring; an ending that is none of these */
 Net parse_net(std::string_view text, const std::string& file);
 
 /** Write the lines of a .net file. Reading them gives the same net. */

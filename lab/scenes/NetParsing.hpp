@@ -3,7 +3,6 @@
  * The tools of the readers of nets: numbers, faces and springs from words. */
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -15,7 +14,7 @@
 namespace lab::net_parsing {
 
 using Words = std::span<const std::string_view>;
-using mesh_detail::quoted;
+using mesh_detail::each_line, mesh_detail::quoted;
 
 [[noreturn]] inline void fail(const std::string& what) {
   throw std::runtime_error(what);
@@ -50,47 +49,41 @@ class Builder {
  public:
   Net net;
   int first = 0;  ///< the number of the first node in the file, for messages
+  /** The number of nodes that the file announces. */
+  std::size_t announced = 0;
+  std::string skipped = {};  ///< what is in the file but not read
 
   unsigned index(long long i) const {
-    if (i < 0 || i >= (long long)net.points.size())
+    if (i < 0 || i >= (long long)std::max(announced, net.points.size()))
       fail("there is no node " + std::to_string(i + first));
     return unsigned(i);
   }
-  /** The face with these @a corners around it. */
+  /** The face with these @a corners around it, as many as there are. */
   void face(std::span<const long long> corners) {
-    const std::size_t n = corners.size();
-    if (n != 3 && n != 4) fail("a face of " + CME212::count_of(n, "corner"));
-    for (std::size_t k = 0; k < n; ++k)
-      if (std::ranges::count(corners, corners[k]) > 1)
-        fail("node " + std::to_string(corners[k] + first) + " comes twice");
-    const auto at = [&](std::size_t k) { return index(corners[k]); };
-    net.quads.push_back(n == 3 ? face_around(at(0), at(1), at(2))
-                               : face_around(at(0), at(1), at(2), at(3)));
+    for (long long c : corners) corners_.push_back(index(c));
+    sizes_.push_back(corners.size());
   }
   void spring(long long i, long long j, double K = -1, double L = -1) {
     net.springs.push_back({index(i), index(j), K, L});
     if (i == j) fail("joins node " + std::to_string(i + first) + " to itself");
   }
+  void skip(const std::string& what) {
+    if (skipped.find(what) == skipped.npos && skipped.size() < 99)
+      skipped += (skipped.empty() ? "not read: " : ", ") + what;
+  }
+  /** Make nodes within 1e-6 of the size of all one node.
+   * @param says_so add a note */
+  void weld(bool says_so);
+  /** The net, with its faces; what they needed is in its notes. */
+  Net made() &&;
+
+ private:
+  std::vector<unsigned> corners_;  // of all faces, one after the other
+  std::vector<std::size_t> sizes_;
 };
 
-/** Call @a use(words) for each line of @a text; what it throws gets its line,
- * and what @a expected() says then. */
-template <typename Use>
-void each_line(std::string_view text, const std::string& file, Use use,
-               const std::function<std::string()>& expected) {
-  mesh_detail::for_each_line(text, [&](auto& words, std::size_t line) {
-    try {
-      use(Words(words));
-    } catch (const std::runtime_error& e) {
-      throw InputError(file, line, e.what() + (", expected " + expected()));
-    }
-  });
-}
-
-inline const std::string corners = "faces of three or four different nodes";
-
 // Formats that may be binary; as parse_net().
-Net parse_stl(std::string_view text, const std::string& file);
-Net parse_ply(std::string_view text, const std::string& file);
+void parse_stl(std::string_view text, const std::string& file, Builder& b);
+void parse_ply(std::string_view text, const std::string& file, Builder& b);
 
 }  // namespace lab::net_parsing

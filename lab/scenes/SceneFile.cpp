@@ -24,7 +24,7 @@ Origins set_fields(Model& m, const std::string& file, const std::string& text,
     if (!set_field(m, key, found.values) && !(other && other(found)))
       throw InputError(
           file, line,
-          "unknown key " + printable(key) + did_you_mean(key, scene_keys()));
+          "unknown key " + printable(key) + key_instead_of(key, scene_keys()));
     if (key == "nodes") m.nodes = beside(file, m.nodes);
     if (key == "tets") m.tets = beside(file, m.tets);
     if (key == "net") m.net = beside(file, m.net);

@@ -66,6 +66,7 @@ class Finder {
     if (m_.sheets.size() != 1) faults_of_the_mesh();
     springs_of_no_length();
     nothing_held();
+    without_effect();
     for (const Wall& w : m_.planes) below(w);
     for (const Solid& s : m_.spheres) {
       const std::string name = name_of("sphere", s.ball);
@@ -105,7 +106,7 @@ class Finder {
   }
   std::string of_all(std::size_t quads) const {
     return std::to_string(quads) + " of " +
-           count_of(mesh_.quads.size(), "quad");
+           count_of(mesh_.quads.size(), face_or_quad(mesh_.quads));
   }
 
   void faults_of_the_mesh() {
@@ -132,6 +133,20 @@ class Finder {
         std::to_string(first.node2().index()) +
         " are at the same point, and no spring force keeps them apart; " +
         "make them one node");
+  }
+
+  void without_effect() {
+    const Model usual;
+    if (!mesh_.quads.empty() && !mesh_.bare_faces) return;
+    const std::string changes_nothing = " changes nothing: ";
+    if (to_words(m_.edges) != to_words(usual.edges))
+      add("--edges" + changes_nothing + "no face gives springs");
+    const auto has_K = [](const Spring& s) { return s.K >= 0; };
+    const auto* const option = m_.material.modulus               ? "--modulus"
+                               : m_.stiffness != usual.stiffness ? "--stiffness"
+                                                                 : "";
+    if (*option && std::ranges::all_of(mesh_.springs, has_K))
+      add(option + changes_nothing + "each spring of the net has its own K");
   }
 
   void nothing_held() {

@@ -15,7 +15,7 @@ double opening(const Net& mesh, const Quad& q);
 
 /** The faults of a scene: a sentence each, with numbers and a remedy.
  *  - what a reader changed in the mesh, mesh_faults(), a size as in mm; springs
- *    of length 0; nothing held
+ *    of length 0; nothing held; options that change no spring
  *  - nodes below a plane, inside a solid or a tearing ball; and what the first
  *    step does then
  *  - openings of the mesh through which a solid ball fits, now or when

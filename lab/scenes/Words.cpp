@@ -1,6 +1,7 @@
 #include "lab/scenes/Words.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -188,6 +189,7 @@ void read_words(const std::string& text, const std::function<Words()>& words) {
     }
     char* end = nullptr;
     const double value = std::strtod(next.c_str(), &end);
+    if (!numbers && allowed.size() == 1) numbers = &found[allowed[0].name];
     if (*end != '\0' || !std::isfinite(value) || !numbers)
       fail("has \"" + next + "\", expected " +
            (numbers ? "a number or one of " : "one of ") + names);
@@ -251,19 +253,19 @@ Measure read_measure(const std::string& text) {
   }
   const auto found = std::ranges::find(known, name);
   if (found == known.end())
-    throw SceneError("measure", "is " + text + ", expected one of " + names +
-                                    ", or one after max, min, mean, first, "
-                                    "last or period" +
-                                    did_you_mean(name, known));
+    throw SceneError("measure", text,
+                     "one of " + names +
+                         ", or one after max, min, mean, first, last or "
+                         "period" +
+                         did_you_mean(name, known));
   m.quantity = Measure::Quantity(found - known.begin());
   std::getline(in, words);
   if (words_of(m).all.empty() && !words.empty())
-    throw SceneError("measure",
-                     "is " + text + ", expected nothing after " + name);
+    throw SceneError("measure", text, "nothing after " + name);
   read_words(words, [&m] { return words_of(m); });
   if (m.over != Measure::at_end &&
       (m.quantity == Measure::positions || m.quantity == Measure::tear_time))
-    throw SceneError("measure", "is " + text + ", expected " + name + " alone");
+    throw SceneError("measure", text, name + " alone");
   return m;
 }
 TimeStep read_time_step(const std::string& text) {
@@ -285,10 +287,9 @@ TimeStep read_time_step(const std::string& text) {
   if (rest.empty() || !end || *end != '\0' ||
       !(*number > 0 &&
         *number <= (step.fixed() ? std::numeric_limits<double>::max() : 1)))
-    throw SceneError(
-        "dt", "is " + text +
-                  ", expected a positive time [s] or auto[:sharp][:G] with G "
-                  "in (0, 1], the energy gain tolerated, as auto:0.02");
+    throw SceneError("dt", text,
+                     "a positive time [s] or auto[:sharp][:G] with G in (0, "
+                     "1], the energy gain tolerated, as auto:0.02");
   return step;
 }
 
@@ -324,23 +325,23 @@ constexpr struct {
 }  // namespace
 
 const MethodEntry* method_named(std::string_view name, std::string& hint) {
+  if (const MethodEntry* method = find_method(name)) return method;
+  std::string lower(name);
+  for (char& c : lower) c = c == '_' || c == ' ' ? '-' : char(std::tolower(c));
   std::vector<std::string_view> names;
+  for (const MethodEntry& m : methods) names.push_back(m.info.name);
   for (const auto& other : other_names) {
     if (name == other.name && other.same) return find_method(other.method);
-    if (name == other.name)
-      hint = std::string(": did you mean ") + other.method + '?';
+    if (lower == other.name) lower = other.method;
     names.push_back(other.same ? other.name : other.method);
   }
-  const MethodEntry* method = find_method(name);
-  for (const MethodEntry& m : methods) names.push_back(m.info.name);
-  if (!method && hint.empty()) hint = did_you_mean(name, names);
-  return method;
+  hint = did_you_mean(lower, names);
+  return nullptr;
 }
 const MethodEntry* read_method(const std::string& text) {
   std::string hint;
   if (const MethodEntry* method = method_named(text, hint)) return method;
-  throw SceneError("method",
-                   "is " + text + ", expected a name of --list-methods" + hint);
+  throw SceneError("method", text, "a name of --list-methods" + hint);
 }
 
 // -------------------------------------------------------------------- Writing
