@@ -186,6 +186,22 @@ Answer stretch_at(const Measured& now, const Measure& what) {
   return {most};
 }
 
+/** The force that acted on @a n [N].  O(its springs) */
+Point force_on(const Measured& now, Node n) {
+  Point f = (*now.force)(n, now.time);
+  for (Edge e : n.edges()) {
+    if (e.id() >= now.pulls.size()) continue;
+    const bool first =
+        e.node1().id() == arrays(now.cloth).edge_ends()[e.id()][0];
+    const Point u = e.node2().position() - e.node1().position();
+    const auto& [K, L] = e.value();
+    const double l = norm(u);
+    if (l > 0) f -= (K * (l - L) / l) * u;
+    f += (first ? 1 : -1) * now.pulls[e.id()];
+  }
+  return f;
+}
+
 /** The sum of all forces on the held nodes that @a what names [N]: what the
  * pins carry, as held nodes do not accelerate.  O(springs at them) */
 Answer pin_force(const Measured& now, const Measure& what) {
@@ -197,7 +213,7 @@ Answer pin_force(const Measured& now, const Measure& what) {
       if (what.pin.distance(0, place) >= Pin::near) continue;
       some = true;
       if (arrays(g).node_in_use(id))
-        sum += (*now.force)(arrays(g).node_with_id(id), now.time);
+        sum += force_on(now, arrays(g).node_with_id(id));
     }
   if (!some)
     throw SceneError("measure",
@@ -212,7 +228,7 @@ Answer contact_force(const Measured& now, const Measure&) {
   Point sum;
   auto press = [&](Node n, double depth, const Point& out) {
     if (!(std::abs(depth) < 1e-9 * std::max(1., norm(n.position())))) return;
-    sum += std::min(0., dot((*now.force)(n, now.time), out)) * out;
+    sum += std::min(0., dot(force_on(now, n), out)) * out;
   };
   for (Node n : now.cloth.nodes()) {
     for (const Wall& w : now.model.planes)

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -159,6 +160,8 @@ class Stepper {
   double round_off() const { return guard_->round_off(); }
   /** Force evaluations since the start, without those in linear solves. */
   long long evaluations() const { return evaluations_ + force_->evaluations(); }
+  /** Method::pulls(). */
+  std::span<const Point> pulls() const { return method_->pulls(); }
   /** The other work of the method since the start. */
   Work work() const;
   /** What happened when step() returned false; nullopt before. */

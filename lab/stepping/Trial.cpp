@@ -13,7 +13,8 @@ namespace lab {
 Answer answer(const Model& m, const Scene& scene, const Measure& what) {
   return quantities[what.quantity].read(
       {m, scene.cloth(), scene.time(), &scene.held(), &scene.force(),
-       what.quantity == Measure::lost_energy ? scene.lost() : 0},
+       what.quantity == Measure::lost_energy ? scene.lost() : 0,
+       scene.stepper().pulls()},
       what);
 }
 
