@@ -222,7 +222,7 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines) {
 Live::Live(const Model& m) : Live(m, mesh_of(m)) {}
 Live::Live(const Model& m, Net mesh) : changes_(read_changes(m.at)) {
   main_.emplace(std::make_unique<Scene>(m, std::move(mesh)), *m.method);
-  main_->scene->watch_energy(m.t_end);
+  main_->scene->watch(m.t_end);
   start_nodes_ = scene().cloth().num_nodes();
   start_edges_ = scene().cloth().num_edges();
 }

@@ -99,10 +99,11 @@ std::optional<Why> why_failed(const Scene& s) {
     w.kind = kinds[int(f->kind)], w.cause = e.cause, w.text = e.text();
     w.step = f->step, w.time = f->time, w.dt = f->dt;
     if (f->place.index >= 0) w.node = f->place.index;
-  } else {  // as ./cloth ends: a chosen step has its own watch
-    const EnergyWatch& watch = *s.energy_watch();
-    if (s.control() || !watch.gains()) return std::nullopt;
-    w.kind = "energy", w.cause = watch.gain_text();
+  } else {  // as ./cloth ends
+    if (s.control() || !s.witness()) return std::nullopt;
+    const Verdict& verdict = s.witness()->verdict();
+    if (!verdict.wrong()) return std::nullopt;
+    w.kind = "energy", w.cause = verdict.wrong_text();
     w.text = w.cause + "; " + s.remedy();
     w.step = s.steps(), w.time = s.time(), w.dt = s.dt();
   }
@@ -181,7 +182,7 @@ class Simulation {
         live ? nullptr
              : std::make_unique<Scene>(model_, mesh_, m.step, *m.method);
     Scene& scene = live ? live->scene() : *alone;
-    scene.watch_energy(m.t_end);
+    scene.watch(m.t_end);
     Result r;
     Settled<State> states(scene.stepper(), [&r](const State& s) { r.add(s); });
     states.add(State(scene));

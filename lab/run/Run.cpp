@@ -9,6 +9,7 @@
 #include <iomanip>
 #include <iostream>
 #include <sstream>
+#include <utility>
 
 #include "lab/fast/Energy.hpp"
 #include "lab/live/Live.hpp"
@@ -35,7 +36,7 @@ Run::Run(Scene& scene, const Options& o, Live* live)
             [this](const std::string& row) { write_csv(row), ++written_; }) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
     scene_.follow_drag();
-  scene_.watch_energy(o.model.t_end);
+  if (!o.bounds_error) scene_.watch(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
   if (const auto quads = quads_beside(o.out); !quads.empty())
     quads_.emplace(quads);
@@ -51,8 +52,8 @@ void Run::start() {
   progress_ = Progress(o_.quiet);
   observer_.restart(o_.model, scene_);
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
-  rows_.clear(), written_ = 0, kept_energy_.reset();
-  half_.reset(), halved_ = false;
+  rows_.clear(), written_ = 0;
+  judged_ = false, verdict_ = nullptr;
   frames_.restart();
   frames_.add(scene_);
   if (!o_.csv.empty()) begin_csv();
@@ -237,7 +238,10 @@ int Run::finish() {
     print_summary();
     tell_work();
     if (scene_.control()) tell_steps(*scene_.control());
-    if (!scene_.failure()) try_half(), tell_energy();
+    if (find_verdict())
+      std::cout << verdict_->text() << '\n';
+    else if (!scene_.failure() && !o_.bounds_error)
+      std::cout << "not compared with half of dt\n";
     if (live_ && live_->changes_left() > 0)
       warn(CME212::count_of(live_->changes_left(), "change") +
            " would come after the end");
@@ -419,37 +423,17 @@ void Run::tell_work() const {
   std::cout << "work: " << text << '\n';
 }
 
-/** Compare with half of the step, if that is fast, dt is fixed, and the method
- * is one of ours: a step that was added may not run twice. */
-void Run::try_half() {
-  const auto is_it = [this](const MethodEntry& m) {
-    return m.info.name == scene_.method().name;
-  };
-  const double share = scene_.energy_watch()->is_off() ? 1 : 1 / 4.;
-  if (halved_ || o_.bounds_error || scene_.control() || interrupted() ||
-      scene_.method().adaptive || std::ranges::none_of(methods, is_it))
-    return;
-  halved_ = true;
+/** What half of the step shows.  @return false if it was not tried */
+bool Run::find_verdict() {
+  if (verdict_ || !scene_.witness() || scene_.failure() || interrupted())
+    return verdict_;
   try {
-    half_ = scene_.half_step(share * Scene::trial_work);
+    const bool asks = o_.model.measure.quantity != Measure::positions;
+    const Answer mine = asks ? answer() : Answer();
+    verdict_ = &scene_.witness()->verdict(asks ? &mine : nullptr);
   } catch (const Interrupted&) {  // it was not compared
   }
-}
-
-void Run::tell_energy() const {
-  const EnergyWatch& watch = *scene_.energy_watch();
-  if (watch.taken() > watch.torn())
-    std::cout << "contact and errors of the method changed the energy by "
-              << CME212::two_digits(watch.change()) << " J";
-  else
-    std::cout << watch.off_text();
-  if (watch.torn() > 0)
-    std::cout << "; tearing took " << CME212::two_digits(watch.torn()) << " J";
-  if (half_)
-    std::cout << "; " << half_->half_text();
-  else if (!o_.bounds_error)
-    std::cout << "; positions were not checked: half of dt shows their error";
-  std::cout << '\n';
+  return verdict_;
 }
 
 static std::string gain_text(const StepControl& c) {
@@ -459,33 +443,32 @@ static std::string gain_text(const StepControl& c) {
   return out.str();
 }
 
+/** Of steps that are chosen, StepControl tells what it tolerates: a warning is
+ * enough. */
+bool Run::wrong() const {
+  return verdict_ && verdict_->wrong() && !scene_.control();
+}
+
 bool Run::judge() {
-  if (kept_energy_) return *kept_energy_;
-  const EnergyWatch& watch = *scene_.energy_watch();
   const auto& control = scene_.control();
-  const bool gains = !control && watch.gains();
-  if (gains || !o_.quiet) try_half();
-  const bool same = half_ && half_->is_close();
-  // Else the sums of work and drag err, not the motion.
-  kept_energy_ = !gains || (same && scene_.stepper().forgets());
-  if (!*kept_energy_) {
-    std::string text = watch.gain_text() + "; ";
-    try {
-      text += scene_.diagnosis().cause_text() + "; ";
-    } catch (const Interrupted&) {  // remedy() says so
+  if (find_verdict() && !std::exchange(judged_, true)) {
+    if (wrong()) {
+      std::string text = verdict_->wrong_text() + "; ";
+      try {
+        text += scene_.diagnosis().cause_text() + "; ";
+      } catch (const Interrupted&) {  // remedy() says so
+      }
+      warnings_.push_back(text + scene_.remedy());
+      std::cerr << "cloth: " << warnings_.back() << '\n';
+    } else if (!o_.quiet && !verdict_->fine()) {
+      warn((verdict_->wrong() ? verdict_->wrong_text()
+                              : verdict_->difference()) +
+           "; " + scene_.remedy());
     }
-    warnings_.push_back(text + scene_.remedy());
-    std::cerr << "cloth: " << warnings_.back() << '\n';
-  } else if (!o_.quiet) {
-    if (watch.is_off() && !(same && scene_.stepper().forgets()))
-      warn(watch.off_text() + ", which is an error of the method; " +
-           scene_.remedy());
-    else if (half_ && !same)
-      warn(half_->half_text() + "; " + scene_.remedy());
+    if (!o_.quiet && control && control->state().gain > control->tolerance())
+      warn(gain_text(*control) + "; " + scene_.remedy());
   }
-  if (!o_.quiet && control && control->state().gain > control->tolerance())
-    warn(gain_text(*control) + "; " + scene_.remedy());
-  return *kept_energy_;
+  return !wrong();
 }
 
 void Run::tell_steps(const StepControl& c) const {

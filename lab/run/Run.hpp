@@ -57,9 +57,8 @@ class Run {
   /** Print what acts, how long the step is, and how long it may be; warn of
    * what will go wrong, and of a run of hours. */
   void announce();
-  /** Once the run is done(): judge its energy, compare a short run with one of
-   * half of its step, and warn of what is wrong.
-   * @return false: the method has made more of it than is tolerated */
+  /** Once the run is done(): warn of what half of its step shows to be wrong.
+   * @return false: Verdict::wrong(), with a fixed step */
   bool judge();
   /** The warnings so far, without what is in --quiet runs. */
   const std::vector<std::string>& warned() const { return warnings_; }
@@ -92,9 +91,8 @@ class Run {
   std::string kept_;            // in words
   double seconds_ = 0;          // until the last step
   bool missed_ = false, told_ = false;
-  std::optional<bool> kept_energy_;  // judge()
-  std::optional<Attempt> half_;      // of the step, if that was tried
-  bool halved_ = false;              // or it need not be tried
+  const Verdict* verdict_ = nullptr;  // of scene_.witness()
+  bool judged_ = false;
   std::vector<std::string> warnings_;
 
   int steps_to_write() const;
@@ -113,8 +111,8 @@ class Run {
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
-  void try_half();
-  void tell_energy() const;
+  bool find_verdict();
+  bool wrong() const;
   void tell_steps(const StepControl& c) const;
   void tell_work() const;
   void warn(const std::string& text);

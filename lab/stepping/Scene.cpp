@@ -6,6 +6,7 @@
 #include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/methods/Methods.hpp"
 #include "lab/scenes/Interrupt.hpp"
 
 namespace lab {
@@ -27,7 +28,9 @@ Scene::Scene(const Model& m, Net mesh)
     : Scene(m, std::move(mesh), m.step, *m.method) {}
 Scene::Scene(const Model& m, Net mesh, const TimeStep& step,
              const MethodEntry& method)
-    : SceneParts(m, std::move(mesh)), Stepper(built_, step, method) {}
+    : SceneParts(m, std::move(mesh)), Stepper(built_, step, method) {
+  confirm_by([this](const Energies& e) { return confirms(e); });
+}
 
 Scene::Scene(const Scene& other, const TimeStep& step,
              const MethodEntry& method)
@@ -35,6 +38,7 @@ Scene::Scene(const Scene& other, const TimeStep& step,
       Stepper(built_, step, method, other.time()),
       changed_(true) {
   if (other.follows_drag()) follow_drag();
+  confirm_by([this](const Energies& e) { return confirms(e); });
 }
 
 /** Build the system as it starts. */
@@ -68,6 +72,7 @@ void Scene::restart() {
   changed_ = false, diagnosis_.reset();
   build();
   Stepper::restart();
+  if (witness_) witness_->restart();
 }
 
 // ------------------------------------------------------------------- Changes
@@ -75,18 +80,26 @@ void Scene::restart() {
 template <typename Change>
 void Scene::edit(Change change) {
   Stepper::edit(change);
-  changed_ = true, diagnosis_.reset();
+  changed_ = true;
+  note_change();
 }
 
 void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
   Stepper::change_method(method, step);
-  changed_ = true, diagnosis_.reset();
+  changed_ |= steps() > 0;
+  note_change();
+}
+
+void Scene::note_change() {
+  diagnosis_.reset();
+  if (witness_) witness_->change();
 }
 
 void Scene::change_forces(const Model& m) {
   Cloth fresh;  // has the ids that this cloth had when it was built
   build_model(fresh, m, mesh_.mesh);
   CombinedForces acting = force_of(m, mesh_.mesh, fresh);
+  const bool changed = changed_ || steps() > 0;
   edit([&] {
     model_ = m;
     take_forces(std::move(acting));
@@ -95,6 +108,8 @@ void Scene::change_forces(const Model& m) {
     forget_limits();
     make_method();
   });
+  changed_ = changed;
+  if (!changed) note_change();
 }
 
 namespace {
@@ -170,6 +185,7 @@ void Scene::release() { pull(std::nullopt); }
 void Scene::pull(std::optional<HandForce> hand) {
   set_hand(std::move(hand));
   changed_ = true;
+  if (witness_) witness_->change();
 }
 
 // ------------------------------------------------------------------- Failure
@@ -204,13 +220,65 @@ std::string Scene::remedy() const {
   }
 }
 
+void Scene::watch(double t_end, bool whole) {
+  const auto is_it = [this](const MethodEntry& m) {
+    return m.info.name == method().name;
+  };
+  if (std::ranges::any_of(methods, is_it))
+    witness_ = std::make_unique<Witness>(*this, t_end, whole);
+}
+
+/** @a share of the present step; of steps that are chosen, of the mean one. */
+TimeStep Scene::finer_step(double share) const {
+  constexpr double usual = 1e-6, stricter = 16;  // RungeKutta
+  TimeStep step = {.dt = share * dt()};
+  if (control() && steps() > 0)
+    step.dt = share * std::min(dt(), time() / double(steps()));
+  if (const double t = time_step().tolerance; method().adaptive)
+    step.tolerance = (t > 0 ? t : usual) / (share < 1 ? stricter : 1);
+  return step;
+}
+
+std::unique_ptr<Scene> Scene::finer() const {
+  if (changed_) return branch(0.5);
+  auto finer = std::make_unique<Scene>(model_, mesh_.mesh, finer_step(0.5),
+                                       method_entry());
+  finer->confirm_by([](const Energies&) { return true; });
+  return finer;
+}
+
+std::unique_ptr<Scene> Scene::branch(double share) const {
+  auto branch =
+      std::make_unique<Scene>(*this, finer_step(share), method_entry());
+  branch->confirm_by([](const Energies&) { return true; });
+  return branch;
+}
+
+/** Has a finer run about this energy now, too? It begins in an earlier state.
+ */
+bool Scene::confirms(const Energies& e) const {
+  constexpr double same = 1.5;
+  const Scene* kept = witness_ ? witness_->kept() : nullptr;
+  const double cost = 2 * double(steps()) * evaluations_of(method()) *
+                      (cloth().num_nodes() + cloth().num_edges());
+  if (!kept && (changed_ || cost > trial_work)) return false;
+  try {
+    const auto other = kept ? kept->branch(1) : finer();
+    return other->time() < time() && run_until(*other, time()) &&
+           e.internal() <= same * other->energy().internal();
+  } catch (const Interrupted&) {
+    return true;  // the run ends, too
+  }
+}
+
 std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
   const TimeStep step = {
       .dt = cure.dt,
       .tolerance = cure.method.info.adaptive ? time_step().tolerance : 0};
-  return changed_
-             ? std::make_unique<Scene>(*this, step, cure.method)
-             : std::make_unique<Scene>(model_, mesh_.mesh, step, cure.method);
+  if (!changed_)
+    return std::make_unique<Scene>(model_, mesh_.mesh, step, cure.method);
+  const Scene* kept = witness_ ? witness_->kept() : nullptr;
+  return std::make_unique<Scene>(kept ? *kept : *this, step, cure.method);
 }
 
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {

@@ -11,6 +11,7 @@
 
 #include "lab/scenes/Compose.hpp"
 #include "lab/stepping/Stepper.hpp"
+#include "lab/stepping/Witness.hpp"
 
 namespace lab {
 
@@ -75,12 +76,25 @@ class Scene : private SceneParts, private Stepper {
 
   const Stepper& stepper() const { return *this; }
   using Stepper::archive, Stepper::check, Stepper::control, Stepper::done,
-      Stepper::drift, Stepper::dt, Stepper::energy, Stepper::energy_watch,
-      Stepper::evaluations, Stepper::failure, Stepper::flow,
-      Stepper::follow_drag, Stepper::guard_interval, Stepper::lost,
-      Stepper::method, Stepper::run_to, Stepper::safe_limit, Stepper::settle,
-      Stepper::settled_steps, Stepper::step, Stepper::steps,
-      Stepper::steps_at_once, Stepper::time, Stepper::watch_energy;
+      Stepper::drift, Stepper::dt, Stepper::energy, Stepper::evaluations,
+      Stepper::failure, Stepper::flow, Stepper::follow_drag,
+      Stepper::guard_interval, Stepper::lost, Stepper::method, Stepper::run_to,
+      Stepper::safe_limit, Stepper::settle, Stepper::settled_steps,
+      Stepper::step, Stepper::steps, Stepper::steps_at_once, Stepper::time;
+
+  /** From now on witness() looks at the run, unless its method was added: that
+   * may not run twice.  @param t_end, whole as there */
+  void watch(double t_end, bool whole = false);
+  /** Null: there is none. */
+  const Witness* witness() const { return witness_.get(); }
+  /** Was there a change since the start that model() does not tell? */
+  bool was_changed() const { return changed_; }
+  /** This run with half of its step: from its start, or from the present state
+   * if it was_changed(). Its guard stops it only if it is not finite. */
+  std::unique_ptr<Scene> finer() const;
+  /** The present state, to continue with @a share of its step and such a guard.
+   */
+  std::unique_ptr<Scene> branch(double share) const;
 
   // Changes between two steps: of the present state or, after a failure, of the
   // last good one. The energy that a change adds counts as work in flow(). All
@@ -119,7 +133,7 @@ class Scene : private SceneParts, private Stepper {
    * methods and steps, each to t_end() or for trial_work; without a t_end() to
    * 5 s or longer, or for a sixteenth of that. Trials that do not fail are
    * repeated with half the step.
-   * @pre failure(), or energy_watch() has found that the run is wrong
+   * @pre failure(), or witness() has found that the run is wrong
    * Throws Interrupted. */
   const Diagnosis& diagnosis() const;
   /** Failure and diagnosis in words; only the failure if a signal interrupts
@@ -128,11 +142,6 @@ class Scene : private SceneParts, private Stepper {
   Explanation explanation() const;
   /** The remedy in words.  @pre and throws as explanation() */
   std::string remedy() const;
-  /** This run, compared with one of half of its step: passed if the energies
-   * are the same, to 2.5 % of the largest. nullopt: it fails, or would take
-   * more than @a work, or there was a change since the start.
-   * @pre energy_watch(), no failure()   Throws Interrupted. */
-  std::optional<Attempt> half_step(double work) const;
   /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
   /** The scene with the method and step of @a cure: from its start, or from the
@@ -147,10 +156,14 @@ class Scene : private SceneParts, private Stepper {
  private:
   bool changed_ = false;                        // since the start
   mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
+  std::unique_ptr<Witness> witness_;
 
   template <typename Change>
   void edit(Change change);
   void pull(std::optional<HandForce> hand);
+  TimeStep finer_step(double share) const;
+  bool confirms(const Energies& e) const;
+  void note_change();
 };
 
 }  // namespace lab

@@ -146,10 +146,9 @@ Trial try_out(const Model& m, const Shake& shake,
     // The guard starts anew: it would take these strains for a divergence.
     scene.change_method(*m.method, {.dt = result.dt});
   }
-  scene.watch_energy(m.t_end);
   Observer observer(m, scene);
   const double springs = double(scene.cloth().num_edges()),
-               factor = 10 * std::sqrt(double(scene.cloth().num_nodes()));
+               factor = factor_sweeps(scene.cloth());
   const bool ok = scene.run_to(m.t_end, [&] {
     end_if_interrupted();
     after(scene);
@@ -161,8 +160,6 @@ Trial try_out(const Model& m, const Shake& shake,
       result.earlier.resize(due, observer.answer(m, scene));
   });
   result.failure = text_of(scene.failure());
-  if (const auto& watch = *scene.stepper().energy_watch(); ok && watch.gains())
-    result.gain = watch.gain_text();
   if (ok) {
     result.answer = observer.answer(m, scene);
     if (result.answer.empty())
