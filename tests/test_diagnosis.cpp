@@ -223,7 +223,7 @@ TEST(Diagnosis, NamesTheFirstCureThatOutlivesTheFailure) {
             "step gives the same energy and positions");
 }
 
-// What was wrong besides the energy has to be right with the cure.
+// A cure has to mend the answer or the positions, too.
 TEST(Diagnosis, KnowsNoCureThatIsNoBetterThanTheRun) {
   for (const bool asks : {false, true}) {
     FailedRun run = within_the_limit();

@@ -48,7 +48,8 @@ const tasks = [
     why: 'The limit is 2 / \u03c9, and \u03c9 grows as the root of K / m.'},
   {asks: 'Implicit Euler with 20 times Verlet\u2019s limit: does it hold?',
     settings: {method: 'implicit-euler', share: 20}, answers: holds,
-    found: holding, why: 'Small swings have no limit with it. It pays by damping: ' +
+    found: holding,
+    why: 'Small swings have no limit with it. It pays by damping: ' +
       'this cloth falls too softly.'},
   {asks: 'Implicit midpoint with 20 times Verlet\u2019s limit?',
     settings: {method: 'implicit-midpoint', share: 20}, answers: holds,
@@ -72,8 +73,8 @@ const tasks = [
     settings: {stiffness: 30, gravity: 30, drag: 0, share: 0.9},
     answers: holds, found: ({time, failed}) => failed ? 1
       : time >= 4 ? 0 : null,
-    why: 'The limit is one of small swings. Large ones change the springs\u2019 ' +
-      'stiffness as they go, and feed fast waves below it. With half of this ' +
+    why: 'The limit is one of small swings. Large ones change the ' +
+      'springs\u2019 stiffness as they go, and feed fast waves below it. With half of this ' +
       'step the cloth holds.'},
   {asks: 'Four methods at equal work: whose error is least after 1 s?',
     settings: {share: 0.3, rivals: ['rk4', 'symplectic-euler', 'xpbd']},

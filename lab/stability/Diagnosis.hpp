@@ -105,7 +105,7 @@ struct Attempt {
   double answer = 0;  ///< what half the step changes of it, as a share
   static constexpr double same_place = 0.01;   ///< apart, of equal positions
   static constexpr double same_answer = 0.05;  ///< answer, of equal ones
-  /** What was wrong with @a run besides its energy still is. */
+  /** An error of @a run besides that of its energy is left. */
   bool is_no_better(const FailedRun& run) const {
     return (!run.asked.empty() && answer > same_answer) ||
            (run.apart > 0 && apart > run.apart / 2);

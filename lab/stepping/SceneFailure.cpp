@@ -29,9 +29,9 @@ FailedRun failed_run(const Scene& s) {
   run.verlet = s.safe_limit(table::verlet);
   run.flat = is_flat(s.cloth());
   const Verdict* verdict = s.witness() ? s.witness()->said() : nullptr;
-  run.rigid = !failure && verdict &&
-              (verdict->scale <= verdict->slack ||
-               verdict->gain > 2 * verdict->mine);
+  run.rigid =
+      !failure && verdict &&
+      (verdict->scale <= verdict->slack || verdict->gain > 2 * verdict->mine);
   if (failure || !verdict) return run;
   if (!verdict->has_answer()) run.asked = verdict->asked;
   if (!verdict->gains() && !verdict->is_off()) run.apart = verdict->apart;

@@ -69,7 +69,7 @@ class Observer {
   Settled<Look> looks_;
 };
 
-/** What a factor of a matrix costs, in force sweeps: 10 per node of a side. */
+/** The cost of a factor of a matrix, in force sweeps: 10 per node of a side. */
 inline double factor_sweeps(const Cloth& g) {
   return 10 * std::sqrt(double(g.num_nodes()));
 }
