@@ -74,8 +74,8 @@ const tasks = [
     answers: holds, found: ({time, failed}) => failed ? 1
       : time >= 4 ? 0 : null,
     why: 'The limit is one of small swings. Large ones change the ' +
-      'springs\u2019 stiffness as they go, and feed fast waves below it. With half of this ' +
-      'step the cloth holds.'},
+      'springs\u2019 stiffness as they go, and feed fast waves below it. ' +
+      'With half of this step the cloth holds.'},
   {asks: 'Four methods at equal work: whose error is least after 1 s?',
     settings: {share: 0.3, rivals: ['rk4', 'symplectic-euler', 'xpbd']},
     answers: ['verlet', 'rk4', 'symplectic-euler', 'xpbd'],
