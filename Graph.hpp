@@ -299,9 +299,9 @@ class Graph {
     // END SOLUTION
   }
   /** Remove the node at @a it, as remove_node(*it).
-   * @return an iterator at the node that took the index, or node_end(). So a
-   *         loop visits each node once if it says `it = g.remove_node(it)`
-   *         instead of ++it where it removes.
+   * @return an iterator from which a loop reaches each node that it has not
+   *         visited, if it says `it = g.remove_node(it)` instead of ++it where
+   *         it removes. Here at the node that took the index, or node_end().
    * @pre @a it != node_end() */
   node_iterator remove_node(node_iterator it) {
     // BEGIN SOLUTION 7.1.remove_node_iterator
@@ -396,7 +396,7 @@ class Graph {
     // END SOLUTION
   }
   /** Remove the edge at @a it, as above.
-   * @return an iterator at the edge that took the index, or edge_end().
+   * @return as for a node. Here at the edge that took the index, or edge_end().
    * @pre @a it != edge_end() */
   edge_iterator remove_edge(edge_iterator it) {
     // BEGIN SOLUTION 7.1.remove_edge_iterator

@@ -170,6 +170,7 @@ struct ZeroForce {
    * and on the velocity of @a n. */
   virtual Point operator()(Node /*n*/, double /*t*/) const { return Point(); }
 };
+// OPEN // 5.1: the class ZeroForce, from which the three forces are derived.
 
 /** Weight: f = -m g along z. */
 struct GravityForce : ZeroForce {
@@ -227,7 +228,7 @@ struct CombinedForces : ZeroForce {
   List parts;  ///< none is null
   explicit CombinedForces(List forces) : parts(std::move(forces)) {}
   Point operator()(Node n, double t) const override {
-    // BEGIN SOLUTION 5.2.make_combined_force
+    // BEGIN SOLUTION 5.2.CombinedForces
     Point f;
     for (const auto& force : parts) f += (*force)(n, t);
     return f;
@@ -256,6 +257,7 @@ struct ZeroConstraint {
   /** Reset the nodes of @a g that violate it at time @a t [s]. */
   virtual void operator()(Cloth& /*g*/, double /*t*/) const {}
 };
+// OPEN // 6.1: the class ZeroConstraint, from which the three are derived.
 
 /** Keeps nodes at rest, at the positions that they had when it was made. Pinned
  * nodes may be removed.  Complexity: O(pins) a call */

@@ -35,6 +35,7 @@ using GraphType = Graph<int, double>;
 using NodeType = GraphType::node_type;
 using EdgeType = GraphType::edge_type;
 using size_type = GraphType::size_type;
+static_assert(sizeof(EdgeType) <= 32, "an edge is a proxy: at most 32 bytes");
 
 /** The values of the two ends of an edge, the smaller one first. */
 using Ends = std::pair<int, int>;

@@ -27,6 +27,7 @@ using CME212::find_node, CME212::same;
 using GraphType = Graph<int, double>;
 using NodeType = GraphType::node_type;
 using size_type = GraphType::size_type;
+static_assert(sizeof(NodeType) <= 16, "a node is a proxy: at most 16 bytes");
 
 /** The expected content: the position of each node, by its value. */
 using Model = std::map<int, Point>;

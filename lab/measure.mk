@@ -1,9 +1,9 @@
 # What measures, draws and searches: make help-lab. Results lie in the folder
 # results of their room; a quick run draws in $(B)/charts.
 
-.PHONY: adviser-suite charts figures fuzz grids \
+.PHONY: adviser-suite charts crossings figures fuzz grids \
         long-runs method-costs orders peers-chart peers-deps pictures \
-        rounds-chart speed stability stability-soak try
+        speed stability stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -17,11 +17,12 @@ help-lab:
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
 	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
+	@echo 'make crossings          drawn scenes against an independent oracle;'
+	@echo '                        N=600 SEED=7 PROMISE=healthy FIELD=wind'
 	@echo 'make long-runs          averages over 60 s, past what can be predicted'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
-	@echo 'make rounds-chart       rounds of implicit steps; needs valgrind'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
 	@echo 'make peers-deps peers-chart   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
@@ -35,6 +36,11 @@ help-lab:
 sub  = $(MAKE) --no-print-directory
 draw = python3 lab/charts/draw.py
 
+# Scenes drawn from the table of fields keep what a run promises.
+crossings: $(B)/cloth
+	@/usr/bin/python3 tests/crossings/crossings.py $< $(N:%=--scenes %) $(SEED:%=--seed %) \
+	  $(PROMISE:%=--promise %) $(FIELD:%=--field %)
+
 # All charts, and the figures of the text, from the CSV files as they are.
 figures:
 	@$(draw)
@@ -47,20 +53,10 @@ override STEP := $(value STEP)
 try: export FILE := $(FILE)
 try: export STEP := $(STEP)
 override RECORD := $(value RECORD)
-try: export RECORD := $(RECORD)
 try:
 	@echo "make try: compiles and measures the step in $${FILE:-no file}," \
 	  "within a minute" >&2
 	@tools/deps.sh grade draw && python3 lab/try/try.py
-
-# ./cloth with a method "yours": lab/try/film.py gives what TRY_ names, and builds
-# another one in the jail by the words that this writes.
-.PHONY: try_film
-try_film: $(B)/lab/run/cloth.o $(B)/liblab.a $(B)/libviewer.a
-	@$(CXX) $(lab_flags) $(speed) -w $$TRY_DEFINES -o $$TRY_OUT \
-	  lab/try/film.cpp $(filter-out %/libviewer.a,$^) $(draw_libs) $(LDLIBS)
-	@echo $(lab_flags) $(speed) $(filter-out %/libviewer.a,$^) $(draw_libs) \
-	  $(LDLIBS)
 
 # ---- Charts: lab/charts/README.md
 
@@ -129,11 +125,6 @@ measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
   $$($(CXX) --version | head -n 1), commit \
   $$(git diff --quiet HEAD -- . ':!*/results/*' || printf 'after ')$$(git \
   describe --always)
-rounds-chart: bench_rounds
-	@{ echo "# $(measured_on)" && lab/bench/rounds.py $(B)/bench_rounds; } \
-	  > $(B)/rounds.csv
-	@mv $(B)/rounds.csv lab/bench/results/rounds.csv
-	@$(draw) decision
 
 # Other libraries beside ours: lab/bench/peers/README.md
 peers := lab/bench/peers

@@ -12,12 +12,11 @@ ifneq ($(UNITY),)
 UNITS ?= 6
 
 # Programs of their own: three specialize templates of other namespaces, four
-# are linked with the window, one hooks malloc, one holds the course's headers
-# to what they bring, one has another Graph.hpp.
+# are linked with the window, one hooks malloc, one has another Graph.hpp.
 tests_drawn := test_viewer test_faces test_image test_screen
 tests_alone := test_graph test_graph_memory \
                $(if $(filter 1,$(VIEWER)),$(tests_drawn)) \
-               test_cloth test_course_interface test_plain_steps
+               test_cloth test_plain_steps
 
 dealt      := $(shell ls -S $(filter-out $(patsubst %,tests/%.cpp, \
                 $(tests_alone) $(tests_drawn)),$(lab_tests)))

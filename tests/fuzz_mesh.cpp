@@ -93,9 +93,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   if (size == 0) return 0;
   std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   try {
-    const char* const nets[] = {"f.net", "f.obj", "f.off",
-                                "f.ply", "f.stl", "f.vtp"};
-    data[0] >= 250     ? check_net(text, nets[data[0] - 250])
+    const char* const nets[] = {"f.net", "f.obj", "f.off", "f.ply", "f.stl"};
+    data[0] >= 251     ? check_net(text, nets[data[0] - 251])
     : data[0] % 4 == 2 ? check_nodes(text)
     : data[0] % 2 == 0 ? check_points(text)
                        : check_quads(text);

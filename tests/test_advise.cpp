@@ -340,7 +340,7 @@ TEST(Advise, NoMethodAloneIsCheaper) {
   ASSERT_EQ(a.refusal, "");
   AdviceRules rules;
   rules.keeps_method = true;
-  for (const char* method : {"verlet", "implicit-euler", "fast-mass-spring"}) {
+  for (const char* method : {"verlet", "implicit-euler", "tr-bdf2"}) {
     m.method = find_method(method);
     const Advice alone = advise(m, rules);
     if (alone.refusal.empty()) {

@@ -1,10 +1,9 @@
-// SparseCholesky.hpp: blocks and numbers, against a dense factor.
+// SparseCholesky.hpp, against a dense factor.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <type_traits>
 
 #include <Eigen/Cholesky>
 
@@ -28,21 +27,13 @@ Matrix3 matrix(const Eigen::Matrix3d& m) {
 }
 
 /** A matrix of springs, the usual input of the solver, here dense as well. */
-template <typename Entry>
 class Cholesky : public ::testing::Test {
  protected:
-  using Pair = typename SparseCholesky<Entry>::Pair;
-  SparseCholesky<Entry> a;
+  using Pair = SparseCholesky::Pair;
+  SparseCholesky a;
   Eigen::MatrixXd dense;
   Cholesky() { CME212::default_generator.seed(7); }
 
-  /** The 3 x 3 matrix @a m as an entry: of numbers only its corner. */
-  static Entry entry(const Eigen::Matrix3d& m) {
-    if constexpr (std::is_same_v<Entry, double>)
-      return m(0, 0);
-    else
-      return matrix(m);
-  }
   static Eigen::Matrix3d alike(double x) {
     return x * Eigen::Matrix3d::Identity();
   }
@@ -66,8 +57,7 @@ class Cholesky : public ::testing::Test {
     return all;
   }
 
-  /** Springs of random stiffness between @a pairs: of any direction if the
-   * entries are blocks. */
+  /** Springs of random stiffness and direction between @a pairs. */
   void fill(const std::vector<Pair>& pairs) {
     a.clear();
     dense.setZero(3 * a.rows(), 3 * a.rows());
@@ -76,17 +66,15 @@ class Cholesky : public ::testing::Test {
     };
     for (unsigned i = 0; i < a.rows(); ++i) {
       const Eigen::Matrix3d m = alike(random(0.1, 1));
-      a.add_diagonal(i, entry(m)), add(i, i, m);
+      a.add_diagonal(i, matrix(m)), add(i, i, m);
     }
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const Eigen::Vector3d n(random(-3, 3), random(-3, 3), random(-3, 3));
-      const bool blocks = std::is_same_v<Entry, Matrix3>;
-      const Eigen::Matrix3d b =
-          blocks ? Eigen::Matrix3d(n * n.transpose()) : alike(n[0] * n[0]);
+      const Eigen::Matrix3d b = n * n.transpose();
       const auto [i, j] = pairs[k];
-      a.add_diagonal(i, entry(b)), add(i, i, b);
-      a.add_diagonal(j, entry(b)), add(j, j, b);
-      a.add(k, entry(-b)), add(i, j, -b), add(j, i, -b);
+      a.add_diagonal(i, matrix(b)), add(i, i, b);
+      a.add_diagonal(j, matrix(b)), add(j, j, b);
+      a.add(k, matrix(-b)), add(i, j, -b), add(j, i, -b);
     }
   }
   void expect_right(unsigned rows, const std::vector<Pair>& pairs) {
@@ -115,45 +103,32 @@ class Cholesky : public ::testing::Test {
     }
   }
 };
-struct Names {
-  template <typename Entry>
-  static std::string GetName(int) {
-    return std::is_same_v<Entry, double> ? "Numbers" : "Blocks";
-  }
-};
-using Entries = ::testing::Types<double, Matrix3>;
-TYPED_TEST_SUITE(Cholesky, Entries, Names);
 
 // One matrix after another, of another pattern and size: nothing is left.
-TYPED_TEST(Cholesky, SolvesWhatADenseFactorSolves) {
-  this->expect_right(0, {});
+TEST_F(Cholesky, SolvesWhatADenseFactorSolves) {
+  expect_right(0, {});
   for (unsigned rows : {1u, 2u, 5u, 30u, 90u})
     for (unsigned per_row : {0u, 1u, 3u, 20u})
-      this->expect_right(rows,
-                         this->scattered(rows, rows > 1 ? per_row * rows : 0));
-  for (unsigned side : {2u, 5u, 10u})
-    this->expect_right(side * side, this->sheet(side));
-  this->expect_right(0, {});
+      expect_right(rows, scattered(rows, rows > 1 ? per_row * rows : 0));
+  for (unsigned side : {2u, 5u, 10u}) expect_right(side * side, sheet(side));
+  expect_right(0, {});
 }
 
 // A ring of four fills in to nine entries.
-TYPED_TEST(Cholesky, TakesNoMoreEntriesThanItMay) {
-  const std::vector<typename TestFixture::Pair> ring = {
-      {0, 1}, {1, 2}, {2, 3}, {3, 0}};
-  ASSERT_TRUE(this->a.analyze(4, ring, 9));
-  EXPECT_EQ(this->a.entries(), 9u);
-  SparseCholesky<TypeParam> less;
+TEST_F(Cholesky, TakesNoMoreEntriesThanItMay) {
+  const std::vector<Pair> ring = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+  ASSERT_TRUE(a.analyze(4, ring, 9));
+  EXPECT_EQ(a.entries(), 9u);
+  SparseCholesky less;
   for (int turn = 0; turn < 2; ++turn) EXPECT_FALSE(less.analyze(4, ring, 8));
   EXPECT_EQ(less.rows(), 0u);
 }
 
-TYPED_TEST(Cholesky, AllocatesForAnotherPatternOnly) {
-  auto& a = this->a;
-  const auto pairs = this->sheet(12);
+TEST_F(Cholesky, AllocatesForAnotherPatternOnly) {
+  const auto pairs = sheet(12);
   ASSERT_TRUE(a.analyze(144, pairs, enough));
   std::vector<Point> x(144, Point(1, 2, 3));
-  const auto nine = this->entry(this->alike(9)),
-             one = this->entry(this->alike(-1));
+  const auto nine = matrix(alike(9)), one = matrix(alike(-1));
   const long before = allocations;
   for (int turn = 0; turn < 3; ++turn) {
     EXPECT_TRUE(a.analyze(144, pairs, enough));
@@ -164,19 +139,18 @@ TYPED_TEST(Cholesky, AllocatesForAnotherPatternOnly) {
     a.solve(x);
   }
   EXPECT_EQ(allocations, before);
-  EXPECT_TRUE(a.analyze(144, this->sheet(11), enough));
+  EXPECT_TRUE(a.analyze(144, sheet(11), enough));
   EXPECT_GT(allocations, before);
 }
 
-TYPED_TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {
-  auto& a = this->a;
+TEST_F(Cholesky, RefusesWhatIsNotPositiveDefinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<typename TestFixture::Pair> pairs = {{0, 1}};
+  const std::vector<Pair> pairs = {{0, 1}};
   ASSERT_TRUE(a.analyze(2, pairs, enough));
   auto factors = [&](double d, double off) {
     a.clear();
-    for (unsigned i : {0u, 1u}) a.add_diagonal(i, this->entry(this->alike(d)));
-    a.add(0, this->entry(this->alike(off)));
+    for (unsigned i : {0u, 1u}) a.add_diagonal(i, matrix(alike(d)));
+    a.add(0, matrix(alike(off)));
     return a.factorize();
   };
   for (double d : {-1.0, 0.0, 0.5, 1.0, nan, HUGE_VAL, 2.0})
@@ -185,32 +159,32 @@ TYPED_TEST(Cholesky, RefusesWhatIsNotPositiveDefinite) {
     EXPECT_EQ(factors(2, off), off == 1) << off;
 }
 
-TYPED_TEST(Cholesky, ForgetsABThatIsNotFinite) {
-  const auto pairs = this->sheet(12);
-  ASSERT_TRUE(this->a.analyze(144, pairs, enough));
-  this->fill(pairs);
-  ASSERT_TRUE(this->a.factorize());
+TEST_F(Cholesky, ForgetsABThatIsNotFinite) {
+  const auto pairs = sheet(12);
+  ASSERT_TRUE(a.analyze(144, pairs, enough));
+  fill(pairs);
+  ASSERT_TRUE(a.factorize());
   std::vector<Point> bad(144, Point(HUGE_VAL, 1, 1)), x(144, Point(1, -2, 3)),
       y = x;
-  this->a.solve(x);
-  this->a.solve(bad);
+  a.solve(x);
+  a.solve(bad);
   EXPECT_FALSE(std::isfinite(bad[0].x));
-  this->a.solve(y);
+  a.solve(y);
   EXPECT_EQ(x, y);
 }
 
-TYPED_TEST(Cholesky, HasTheSameBitsOnEveryProcessor) {
-  const auto pairs = this->sheet(12);
-  ASSERT_TRUE(this->a.analyze(144, pairs, enough));
+TEST_F(Cholesky, HasTheSameBitsOnEveryProcessor) {
+  const auto pairs = sheet(12);
+  ASSERT_TRUE(a.analyze(144, pairs, enough));
   std::vector<Point> first;
   const auto best = lanes::cpu;
   for (int cpu = 0; cpu <= int(best); ++cpu) {
     lanes::cpu = lanes::Cpu(cpu);
     CME212::default_generator.seed(7);
-    this->fill(pairs);
-    ASSERT_TRUE(this->a.factorize());
+    fill(pairs);
+    ASSERT_TRUE(a.factorize());
     std::vector<Point> x(144, Point(1, -2, 3));
-    this->a.solve(x);
+    a.solve(x);
     if (cpu == 0) first = x;
     EXPECT_EQ(x, first) << cpu;
   }

@@ -39,6 +39,68 @@ TEST_F(ClothProgram, ChangesASceneAsTheLibraryDoes) {
   EXPECT_EQ(r.err, "cloth: warning: 1 change would come after the end\n");
 }
 
+TEST_F(ClothProgram, KnowsTheStiffestStretchBeforeItStarts) {
+  const auto limit = [this](const std::string& options) {
+    const std::string out = run(net + "--t-end 0.01 " + options).out;
+    const std::string before = "of the stability limit (";
+    return std::stod("0" + out.substr(out.find(before) + before.size()));
+  };
+  const std::string soft = "--at '0.002 stiffness 25' ";
+  EXPECT_EQ(limit(soft), limit(""));
+  EXPECT_EQ(limit(soft + "--at '0.004 stiffness 1600'"),
+            limit("--stiffness 1600"));
+  EXPECT_TRUE(has(run(net + "--t-end 0.01 --at '0.004 stiffness 1600'").out,
+                  ", symplectic-euler) from t = 0.004 s on"));
+  // A step that is chosen is chosen anew.
+  const Result r = run(net +
+                       "--gravity 0 --t-end 0.2 --dt auto --method verlet "
+                       "--at '0.1 stiffness 10000' --csv " +
+                       path("e.csv") + " --every 1");
+  EXPECT_EQ(r.status, 0) << r.err;
+  const auto all = rows(dir / "e.csv");
+  const double last = all.back()[0] - all[all.size() - 2][0];
+  EXPECT_LT(last, limit("--method verlet --stiffness 10000"));
+}
+
+TEST_F(ClothProgram, CountsEnergyByTheForcesOfItsTime) {
+  const Result r = run(net +
+                       "--t-end 0.4 --method verlet --measure energy "
+                       "--at '0.2 gravity -5' --csv " +
+                       path("e.csv"));
+  EXPECT_EQ(r.status, 0) << r.err;
+  const auto last = rows(dir / "e.csv").back();
+  EXPECT_GT(last[3], 0) << "below 0 it weighs upwards";
+  EXPECT_NEAR(last[12], 0, 1e-3) << "the balance";
+  EXPECT_NEAR(last[4], last[1] + last[2] + last[3], 1e-5);
+  EXPECT_TRUE(has(r.out, "energy: "));
+}
+
+TEST_F(ClothProgram, GoesOnAfterChangesToTheSameBits) {
+  const std::string scene =
+      net +
+      "--dt 0.00390625 --method verlet --at '0.03125 unpin 3' "
+      "--at '0.0625 stiffness 300' --at '0.0625 cut 27 28' "
+      "--at '0.125 gravity 3' ";
+  const auto end = [this](const std::string& options) {
+    const Result r = run(options + " --out " + path("end.net"));
+    EXPECT_EQ(r.status, 0) << r.err;
+    return contents(path("end.net"));
+  };
+  const std::string right = end(scene + "--t-end 0.25");
+  for (const char* when : {"0.046875", "0.0625", "0.09375", "0.1875"}) {
+    end(scene + "--t-end " + when + " --checkpoint " + path("c"));
+    EXPECT_EQ(end("--headless --t-end 0.25 --restart " + path("c")), right)
+        << when;
+  }
+  const Result r =
+      run("--headless --t-end 0.25 --at '0.03125 unpin 4' "
+          "--restart " +
+          path("c"));
+  EXPECT_EQ(r.err,
+            "cloth: --at does not begin with the changes that were made "
+            "until the checkpoint\n");
+}
+
 TEST_F(ClothProgram, RefusesChangesThatCantBe) {
   EXPECT_EQ(run("--config " +
                 file("s.toml", "sheet = 'nodes 3 3'\nat = '3 gravitas'\n"))
@@ -46,8 +108,10 @@ TEST_F(ClothProgram, RefusesChangesThatCantBe) {
             path("s.toml") +
                 ":2: --at \"3 gravitas\": 'gravitas' is not a request: did "
                 "you mean gravity?\n");
-  EXPECT_EQ(run(net + "--at '1 gravity 3' --checkpoint " + path("c")).err,
-            "cloth: --at cannot be combined with --checkpoint\n");
+  EXPECT_EQ(
+      run(net + "--at '1 pin 3' --checkpoint " + path("c")).err,
+      "cloth: --at has pin, which --checkpoint and --restart do not keep: "
+      "expected cut, drag, gravity, method, stiffness or unpin\n");
   EXPECT_EQ(run(net + "--at '1 gravity 3' --tolerance 1e-6").status, 2);
   EXPECT_EQ(files(), std::vector<std::string>{"s.toml"});
 }

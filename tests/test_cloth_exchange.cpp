@@ -45,8 +45,8 @@ TEST_F(ClothProgram, WritesFramesOfAClothThatTears) {
 
 // A torn cloth, as a net, goes on as it was; frames are read, too.
 TEST_F(ClothProgram, ReadsTheNetsAndTheFramesThatItWrites) {
-  const Result whole = run(torn + "--out " + path("end.net") + " --vtp " +
-                           path("vtp") + " --ply " + path("ply"));
+  const Result whole =
+      run(torn + "--out " + path("end.net") + " --ply " + path("ply"));
   EXPECT_EQ(whole.status, 0) << whole.err;
   const auto at = whole.out.find("nodes and ");
   const std::string edges = whole.out.substr(at + 10, 4);
@@ -57,9 +57,6 @@ TEST_F(ClothProgram, ReadsTheNetsAndTheFramesThatItWrites) {
   EXPECT_TRUE(has(r.out, " nodes, " + edges));
   EXPECT_TRUE(has(r.out, "held by the net: 9 nodes"));
   EXPECT_EQ(contents(path("same.net")), contents(path("end.net")));
-  r = run("--net " + path("vtp/frame_000015.vtp") + end + path("vtp.net"));
-  EXPECT_EQ(r.err, "");
-  EXPECT_TRUE(has(r.out, " nodes, " + edges));
   r = run(path("ply/frame_000000.ply") + end + path("ply.net"));
   EXPECT_EQ(r.err, "");
   EXPECT_TRUE(has(r.out, "81 nodes, 272 edges"));

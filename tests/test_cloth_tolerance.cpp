@@ -42,6 +42,26 @@ TEST_P(Smooth, EndsWithinTheTolerance) {
 
 using Tolerance = ClothProgram;
 
+TEST_F(Tolerance, IsWrittenOnlyIfItWasAskedFor) {
+  const std::string sheet =
+      "--sheet 'at 0 0 0 nodes 4 4' --pin 'x 0' --t-end 0.2 --headless ";
+  const auto at_end = [this](const std::string& options) {
+    const Result r = run(options + " --out " + path("end.nodes"));
+    EXPECT_EQ(r.status, 0) << options << r.err;
+    return r.out.substr(0, r.out.find(" in ")) +
+           CME212::contents(path("end.nodes"));
+  };
+  for (const char* asked :
+       {"", "--method rkn64", "--method rkn64 --at '0.1 gravity 3'",
+        "--tolerance 1e-6", "--tolerance 1e-4 --plane 'at 0 0 -0.1'"}) {
+    EXPECT_EQ(run(sheet + asked + " --write-config " + path("scene.toml")).err,
+              "");
+    EXPECT_EQ(at_end("--headless --config " + path("scene.toml")),
+              at_end(sheet + asked))
+        << asked;
+  }
+}
+
 TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
   const std::string sheet =
       "--sheet 'at 0 0 0 nodes 6 6' --pin 'x 0' --t-end 0.4 --headless ";

@@ -576,14 +576,11 @@ using Slots = graph_detail::SlotMap;
 OPEN(Nodes, G::nodes_);
 OPEN(EdgesOf, G::edges_);
 OPEN(Positions, G::position_);
-OPEN(EdgeValues, G::edge_value_);
 OPEN(Lists, G::neighbors_of_);
 OPEN(Ends, G::ends_);
 OPEN(Generations, Slots::generation_);
 OPEN(IdAt, Slots::ids_);
-OPEN(IndexOf, Slots::index_);
 OPEN(Size, Slots::size_);
-OPEN(SlotCount, Slots::slots_);
 
 /** A good graph with holes, then damaged: is the damage found? */
 template <typename Damage>
@@ -613,25 +610,11 @@ TEST(CheckInvariants, FindsNothingWrongInAGoodGraph) {
 TEST(CheckInvariants, FindsDamagedSlots) {
   auto nodes = [](G& g) -> Slots& { return g.*open(Nodes()); };
   EXPECT_TRUE(found([&](G& g) { ++(nodes(g).*open(Size())); }));
-  EXPECT_TRUE(found([&](G& g) { --(nodes(g).*open(SlotCount())); }));
   EXPECT_TRUE(found([&](G& g) { (nodes(g).*open(IdAt())).clear(); }));
-  EXPECT_TRUE(
-      found([&](G& g) { (nodes(g).*open(IdAt())).resize(g.num_nodes() - 1); }));
-  EXPECT_TRUE(found([&](G& g) { (nodes(g).*open(IndexOf())).resize(2); }));
   EXPECT_TRUE(found([&](G& g) { ++(nodes(g).*open(Generations()))[3]; }));
-  // A free slot: forgotten, one in use, none there is.
-  for (unsigned id : {0u, 5u, 99u})
-    EXPECT_TRUE(found([&](G& g) {
-      auto& at = (nodes(g).*open(IdAt()))[g.num_nodes()];
-      at = id == 5 && at == 5 ? 2 : id;
-    }));
   EXPECT_TRUE(found([&](G& g) {
     auto& at = nodes(g).*open(IdAt());
     std::swap(at[0], at[1]);
-  }));
-  EXPECT_TRUE(found([&](G& g) {
-    auto& index = nodes(g).*open(IndexOf());
-    index[0] = index[1];
   }));
 }
 
@@ -641,33 +624,14 @@ TEST(CheckInvariants, FindsDamagedEdges) {
   auto edge = [](G& g) { return g.edge(0).id(); };
   // Which end is the first one nobody else knows: that can't be found.
   EXPECT_TRUE(found([&](G& g) { ends(g)[edge(g)][0] = 7; }));
-  EXPECT_TRUE(found([&](G& g) { ends(g).resize(3); }));
-  auto shorten = [](auto& array) { array.resize(array.size() - 1); };
-  EXPECT_TRUE(found([&](G& g) { shorten(g.*open(Positions())); }));
-  EXPECT_TRUE(found([&](G& g) { shorten(g.*open(EdgeValues())); }));
+  EXPECT_TRUE(found([&](G& g) { (g.*open(Positions())).pop_back(); }));
   EXPECT_TRUE(found([&](G& g) { lists(g)[0].pop_back(); }));
-  EXPECT_TRUE(found([&](G& g) { lists(g)[0].push_back(lists(g)[3][0]); }));
-  EXPECT_TRUE(found([&](G& g) { lists(g)[0] = {}; }));
-  EXPECT_TRUE(found([&](G& g) { lists(g)[2] = lists(g)[3]; }));
-  EXPECT_TRUE(found([&](G& g) { std::swap(lists(g)[0], lists(g)[1]); }));
-  EXPECT_TRUE(found([&](G& g) { lists(g)[0][0].node = 0; }));
   EXPECT_TRUE(found([&](G& g) { lists(g)[0][0].edge ^= 1; }));
   // The same neighbor twice.
   EXPECT_TRUE(found([&](G& g) { lists(g)[0][0] = lists(g)[0][1]; }));
-  EXPECT_TRUE(found([&](G& g) {  // a removed edge keeps its ends
-    for (unsigned e = 0; e < arrays(g).edge_slots(); ++e)
-      if (!arrays(g).edge_in_use(e)) ends(g)[e] = {0, 1};
-  }));
   EXPECT_TRUE(found([&](G& g) {  // an edge dies without leaving the lists
     (g.*open(EdgesOf())).release(edge(g));
   }));
-}
-
-TEST(CheckInvariants, FindsListsThatShouldNotBe) {
-  G g;
-  g.add_node(Point());
-  ((g.*open(Nodes())).*open(IdAt())).resize(1);
-  EXPECT_THROW(g.check_invariants(), std::logic_error);
 }
 
 }  // namespace

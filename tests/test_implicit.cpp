@@ -1,9 +1,8 @@
-// The implicit methods, fast mass-spring and XPBD against exact solutions of
-// the difference equations, and where others fail.
+// The implicit methods and XPBD against exact solutions of the difference
+// equations, and where others fail.
 #include <gtest/gtest.h>
 
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/Xpbd.hpp"
@@ -48,8 +47,7 @@ struct Oscillator {
 
 template <typename M>
 class Implicit : public ::testing::Test {};
-using All = ::testing::Types<ImplicitEuler, ImplicitMidpoint, TrBdf2,
-                             FastMassSpring, Xpbd>;
+using All = ::testing::Types<ImplicitEuler, ImplicitMidpoint, TrBdf2, Xpbd>;
 struct Names {
   template <typename M>
   static std::string GetName(int) {

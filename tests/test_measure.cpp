@@ -126,6 +126,13 @@ TEST(Measure, AFloorCarriesTheWeightOfWhatRestsOnIt) {
               std::sqrt(2 * 0.1 / grav), 0.004);
   m.planes = {read_plane("at 0 0 -0.1 velocity 0 0 0.01")};
   EXPECT_NEAR(answer_of(m, "contact-force"), grav, 1e-6);
+  // With drag, on a slope, and whatever names the surface or the node again.
+  const Wall slope = read_plane("at 0 0 0 normal 0.2 0 1 friction 1");
+  m.material.drag = 5, m.step.dt = 0.01, m.method = &table::verlet;
+  m.planes = {slope, slope};
+  EXPECT_NEAR(answer_of(m, "contact-force"), grav / std::sqrt(1.04), 1e-3);
+  m.pins = {read_pin("x 0")};  // they carry their nodes
+  EXPECT_LT(answer_of(m, "contact-force"), 0.9 * grav);
   m.planes.clear();
   m.measure = Measure::contact_force;
   EXPECT_THROW(check_question(m), SceneError);
@@ -145,6 +152,9 @@ TEST(Measure, PinsCarryTheWholeWeightAtRest) {
   Cloth g;
   build_model(g, cloth, mesh_of(cloth));
   EXPECT_NEAR(answer_of(cloth, "pin-force"), total_mass(g) * grav, 1e-6);
+  cloth.pins.push_back(read_pin("node 0"));  // which another pin holds
+  EXPECT_NEAR(answer_of(cloth, "pin-force"), total_mass(g) * grav, 1e-6);
+  cloth.pins.pop_back();
   // Both pull up with half of the weight, and against each other.
   const double one = answer_of(cloth, "pin-force x 0");
   EXPECT_GT(one, total_mass(g) * grav / 2);

@@ -15,6 +15,7 @@
 #include "tests/Momentum.hpp"
 #include "tests/Says.hpp"
 #include "tests/SweptForces.hpp"
+#include "tests/TestFolder.hpp"
 
 using namespace lab;
 
@@ -177,6 +178,21 @@ TEST(Methods, AreFoundByTheirNames) {
   for (const MethodEntry& m : methods) EXPECT_EQ(find_method(m.info.name), &m);
   EXPECT_EQ(find_method("verlet")->info.order, 2);
   EXPECT_EQ(find_method("no such"), nullptr);
+}
+
+// A new method has to be named there by hand.
+TEST(Methods, StandOnEveryList) {
+  for (const MethodEntry& m : methods) {
+    const std::string name(m.info.name);
+    for (const auto& [file, line] :
+         {std::pair("lab/methods/README.md", "\n### `" + name + "`, order "),
+          {"lab/methods/Costs.hpp", "{\"" + name + "\", "},
+          {"lab/charts/methods.csv", "\n" + name + ",#"},
+          {"lab/page/page.js", "'" + name + "'"},
+          {"tests/test_orders.cpp", "{\"" + name + "\", {"}})
+      EXPECT_NE(CME212::contents(file).find(line), std::string::npos)
+          << file << " has no line of " << name;
+  }
 }
 
 // ------------------------------------------------------------------ Splittings

@@ -218,6 +218,17 @@ TEST(Ball, IsWatchedWhileItIsAtRest) {
   EXPECT_EQ(ConstraintPlan(rests).thinnest(), 0.5);
   EXPECT_EQ(ConstraintPlan(rests).first_hit(from, to),
             lab::first_hit(ball, from, to));
+  // Wherever it ends behind the center, it has passed; not before, nor if it
+  // slides along the surface.
+  const Point hit(-0.5, 0, 0), near = to * 1e-3, on_top(-0.01, 0, 0.5);
+  for (const Point& end : {to, to * 0.4, near})
+    EXPECT_NEAR(norm(*lab::first_hit(ball, from, end) - hit), 0, 1e-8);
+  EXPECT_TRUE(lab::first_hit(ball, hit * (1 - 1e-9), near));
+  for (const Point& end : {to * -0.1, hit})
+    EXPECT_FALSE(lab::first_hit(ball, from, end));
+  EXPECT_FALSE(lab::first_hit(ball, on_top, on_top + Point(0.3, 0, -0.1)));
+  EXPECT_FALSE(ConstraintPlan(TearConstraint(ball)).first_hit(from, near));
+  EXPECT_TRUE(ConstraintPlan(TearConstraint(ball)).first_hit(from, to));
   EXPECT_EQ(rests.speed(), 0);
   EXPECT_EQ(ConstraintPlan(moves).thinnest(), infinity);
   EXPECT_EQ(ConstraintPlan(moves).first_hit(from, to), std::nullopt);

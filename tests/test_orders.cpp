@@ -63,7 +63,6 @@ const std::map<std::string, std::array<double, 5>> first_steps = {
     {"implicit-euler", {0.2, 1, 2, 0.2, 0.8}},
     {"implicit-midpoint", {0.35, 0.5, 2, 0.35, 0.7}},
     {"tr-bdf2", {0.35, 0.5, 2, 0.35, 1}},
-    {"fast-mass-spring", {0.2, 1, 2, 0.2, 0.8}},
     {"xpbd", {0.5, 1, 2, 0.5, 1}}};
 
 /** A method that makes exactly the steps that it is asked for, and solves its

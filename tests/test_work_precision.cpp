@@ -308,25 +308,6 @@ TEST_F(WorkPrecision, RefinesTheGridTheStepOrBoth) {
     EXPECT_NEAR(dt[refined].front() / dt[refined].back(), 4, 0.1);
 }
 
-TEST_F(WorkPrecision, EveryMethodHasAStyleOfItsOwn) {
-  std::set<std::string> styles;
-  std::map<std::string, int> evaluations;
-  std::istringstream in(contents("lab/charts/methods.csv"));
-  for (std::string line; std::getline(in, line);) {
-    if (line[0] == '#') continue;
-    std::istringstream cells(line);
-    std::string name, color, family, number;
-    for (std::string* cell : {&name, &color, &family, &number})
-      std::getline(cells, *cell, ',');
-    evaluations[name] = std::stoi(number);
-    EXPECT_TRUE(styles.insert(color).second)
-        << line << ": its color is another's";
-  }
-  for (const MethodEntry& m : methods)
-    EXPECT_EQ(evaluations[std::string(m.info.name)], m.info.sweeps)
-        << m.info.name;
-}
-
 TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   auto refused = [this](const std::string& arguments, const char* message) {
     EXPECT_EQ(run_program(arguments + " --out " + csv()), 2) << arguments;

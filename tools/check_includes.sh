@@ -20,7 +20,7 @@ lab/scenes    : lab/methods
 lab/stepping  : lab/scenes lab/stability
 lab/advice    : lab/stepping
 lab/charts    : lab/stability lab/scenes
-lab/try       : mass_spring lab/methods
+lab/try       : mass_spring
 lab/bench     : lab/fast
 lab/live      : lab/stepping
 lab/viewer    : lab/stepping
@@ -35,10 +35,12 @@ tools      :
 course     : tools
 lab/advice :
 lab/bench  :
+lab/scenes :
 lab/charts : lab/advice
 lab/try    : course lab/charts
 lab/page   : course tools
 tests      : course lab/try
+tests/crossings : lab/scenes lab/charts
 docs/site  : course tools
 '
 # A program in the root may draw, and a test; of all else only these:

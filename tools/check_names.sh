@@ -14,7 +14,7 @@ from pathlib import Path
 EXCEPTIONS = {"Add", "Mul",           # of Google Highway
               "usleep", "SDL_WaitEventTimeout",  # of POSIX, of SDL
               "Sanitizers",           # words of a debugger's message
-              "--install",            # of wsl and xcode-select
+              "--install", "--args",  # of wsl and xcode-select, of gdb
               "web.html",             # what make web writes
               ".github/workflows/tests.yml"}  # in a class's repository
 CODE = "hpp cpp py sh js html mk toml gp txt yml sbatch".split()

@@ -18,7 +18,7 @@ packages() {
     test)   echo "libgtest-dev gdb" ;;
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
                  "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" \
-                 "valgrind shellcheck pyflakes3 mypy" ;;
+                 "shellcheck pyflakes3 mypy" ;;
     python) echo "python3-numpy python3-dev pybind11-dev python3-pytest" \
                  "python3-scipy python3-setuptools python3-matplotlib" ;;
     peers)  echo "libsundials-dev libboost-dev libgsl-dev" ;;
@@ -28,7 +28,7 @@ packages() {
                  "libclang-rt-N-dev-wasm32 python3" ;;
     page)   packages web
             echo "libeigen3-dev libtomlplusplus-dev ffmpeg pandoc git" ;;
-    browser) echo "chromium python3-websocket" ;;
+    browser) echo "chromium-driver python3-selenium firefox-esr webkit2gtk-driver xvfb" ;;
     *) echo "deps: no group '$1'; there are: build window film lab draw test" \
             "check python peers grade web page browser" >&2
        exit 2 ;;
@@ -57,7 +57,7 @@ librapidcheck-dev - rapidcheck-devel
 libbenchmark-dev google-benchmark google-benchmark-devel
 xvfb - xorg-x11-server-Xvfb       xauth - xorg-x11-xauth
 xdotool - xdotool                 libseccomp-dev - libseccomp-devel
-valgrind - valgrind               pandoc pandoc pandoc
+pandoc pandoc pandoc
 shellcheck shellcheck ShellCheck  pyflakes3 pyflakes python3-pyflakes
 mypy mypy python3-mypy
 "

@@ -164,11 +164,12 @@ class Room(Sources):
     """A submission's sources, with which tests are built."""
 
     def __init__(self, kit: once.Kit, folder: pathlib.Path,
-                 files: dict[str, bytes]):
+                 files: dict[str, bytes], given: pathlib.Path | None = None):
         super().__init__(kit.jail, folder, files, [
             TESTS, ASKED, YEARS, ROOT / "CME212", kit.preludes, kit.include,
-            *kit.linked], words_of(TESTS, ASKED))
+            *([given] if given else []), *kit.linked], words_of(TESTS, ASKED))
         self.kit = kit
+        self.given = given      # by an older starter: years.py
         self.names = dict(files)     # those that the student wrote
         self.tests: tuple[pathlib.Path, ...] = (TESTS, ASKED)
         self.numbers = itertools.count(1)
@@ -188,7 +189,9 @@ class Room(Sources):
         command = [*self.compiler(way),
                    "-fmax-errors=200", "-fdiagnostics-plain-output",
                    "-ftemplate-depth=400",
+                   *self.of_starter(),
                    "-I", TESTS / "headless", "-I", self.kit.include,
+                   *flags("-I", [self.given] * bool(self.given)),
                    "-I", YEARS,
                    # A header of the system is no file of the submission's.
                    "-iquote", ".", "-idirafter", ".",
@@ -214,6 +217,15 @@ class Room(Sources):
                 result.program = program
         assembly.unlink(missing_ok=True)
         return result
+
+    def of_starter(self) -> list:
+        """Options for what an older starter gave: its names; and its headers
+        before ours, for a graph that is not ours."""
+        if not self.given:
+            return []
+        names = self.given / "names.hpp"
+        return (["-include", names] * names.exists()
+                + ["-I", self.given] * ("Graph.hpp" in self.names))
 
     def compiler(self, way: Way) -> list:
         return [once.CXX, *once.COMMON, *once.FLAGS[way.kind], "-include",

@@ -28,7 +28,8 @@ def made(whole: "Class", row: "Row") -> report.Report:
         if key not in ("kit", "step")}) for test in whole.tests}
     row.step = kept.get(ranking.TASK, {}).get("step")
     taken = submission.Submission({}, row.notes, row.flags)
-    return report.combine(whole.course, submission.shown(row.student), taken,
+    course = row.year.course(whole.course) if row.year else whole.course
+    return report.combine(course, submission.shown(row.student), taken,
                           results)
 
 

@@ -35,6 +35,10 @@ course/3.2.md
   $K$ = {K} N/m
   Problem1Force({K}, 1)
   grav / {K} * (1 - std::cos({root} * t))
+course/requirements.toml
+  "$K$ = {K} N/m"
+  "$x_z < {floor}$ m"
+  "$c = ({center})$ m and $r = {radius}$ m"
 course/tests/bodies.hpp
   given_K = {K};
 course/4.2.md

@@ -1,7 +1,7 @@
 """Grade a submission:  make grade DIR=submission [HW=hw2]
 
     DIR=DIR [HW=TAG] [JSON=FILE] [RESULTS=FILE] [FEEDBACK=names]
-      [SAFE=0] [JOBS=N] python3 course/kit/grade.py
+      [STARTER=VERSION] [SAFE=0] [JOBS=N] python3 course/kit/grade.py
 
 DIR holds Graph.hpp and mass_spring.hpp or mass_spring.cpp. With HW, DIR is a
 clone, and graded is what its tag HW holds. The table goes to the standard
@@ -26,6 +26,7 @@ import once
 import report
 import submission
 import tasks
+import years
 
 
 def tests_of(course: tasks.Course) -> dict[str, str]:
@@ -71,9 +72,11 @@ def less_safe(kit: once.Kit, unsafe: bool) -> Iterator[str]:
 def grade(course: tasks.Course, kit: once.Kit, taken: submission.Submission,
           name: str, jobs: int) -> report.Report:
     tests = tests_of(course)
+    year = years.begun_with(taken, course, os.environ.get("STARTER", ""))
     judge.prepare(kit, tests, jobs)
-    results = judge.judge(kit, taken.files, tests, jobs)
-    return report.combine(course, name, taken, results)
+    results = judge.judge(kit, taken.files, tests, jobs, year=year)
+    return report.combine(year.course(course) if year else course, name, taken,
+                          results)
 
 
 def write(path: str | pathlib.Path, text: str) -> None:

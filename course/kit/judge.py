@@ -32,6 +32,7 @@ import names
 import once
 import ranking
 import sandbox
+import years
 
 PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
 STEP = "mine.hpp"
@@ -179,7 +180,8 @@ class Judge:
 
     def __init__(self, kit: once.Kit, folder: pathlib.Path,
                  files: dict[str, bytes], jobs: int,
-                 memory: Memory | None = None):
+                 memory: Memory | None = None,
+                 year: years.Year | None = None):
         self.kit, self.memory = kit, memory
         self.jobs = threading.Semaphore(jobs)
         self.folder, self.files = folder, files
@@ -190,7 +192,8 @@ class Judge:
         self.names = names.defines(files)
         if kit.answers is None:     # it answers all questions
             self.names += ("KIT_SOLUTION",)
-        own = build.Room(kit, folder / "own", files)
+        self.given = year.unpacked() / "given" if year else None
+        own = build.Room(kit, folder / "own", files, self.given)
         self.rooms: dict[str, list[build.Room]] = {
             "graph": [own], "cloth": [own], "step": [own], "program": []}
         ours = {name: text for name, text in solution().items()
@@ -198,7 +201,8 @@ class Judge:
 
         def with_ours(folder_name, *names_of_ours):
             room = build.Room(kit, folder / folder_name, {
-                **files, **{name: ours[name] for name in names_of_ours}})
+                **files, **{name: ours[name] for name in names_of_ours}},
+                self.given)
             for name in names_of_ours:
                 room.names.pop(name, None)
             return room
@@ -347,7 +351,8 @@ class Judge:
                 break
             files = left
             room = build.Room(
-                self.kit, self.folder / f"mended{next(self.numbers)}", files)
+                self.kit, self.folder / f"mended{next(self.numbers)}", files,
+                whole.given)
             room.names = whole.names
             bridge = self.compile(room, way, [], read, link=False)
             if bridge.refused:
@@ -479,11 +484,13 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
 
 
 def judge(kit: once.Kit, files: dict[str, bytes], tests: dict[str, str],
-          jobs: int, memory: Memory | None = None) -> Results:
-    """{test: Result} of a submission and {test: what it needs}."""
+          jobs: int, memory: Memory | None = None,
+          year: years.Year | None = None) -> Results:
+    """{test: Result} of a submission and {test: what it needs}; `year` is that
+    of an older starter."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="kit-grade-"))
     try:
         folder.chmod(0o755)
-        return Judge(kit, folder, files, jobs, memory).run(tests)
+        return Judge(kit, folder, files, jobs, memory, year).run(tests)
     finally:
         shutil.rmtree(folder, ignore_errors=True)

@@ -4,7 +4,8 @@ The solution gets all points; the starter none of those that its stubs hold
 back; each region stubbed alone turns red a test of its own section and none of
 an earlier one; each mistake of course/wrong (mistakes.py) loses what it says
 and nothing else; what pages and contracts promise is broken by one of them
-(promises.py). ONLY takes the cases whose names hold WORD; EVERY takes one in
+(promises.py); right submissions to older starters keep their points (years.py).
+ONLY takes the cases whose names hold WORD; EVERY takes one in
 N of the regions and mistakes, beginning with number FIRST, by default 0: all
 FIRST < N together take each of them once.
 """
@@ -29,6 +30,7 @@ import promises
 import report
 import submission
 import tasks
+import years
 
 BASES = ("solution", "simple", "forms")     # submissions that are right
 ESCAPED = [pathlib.Path(folder) / "kit-cheat"
@@ -172,6 +174,27 @@ class Check:
                    if os.path.lexists(path)]
         return faults, time.monotonic() - started
 
+    def older(self) -> None:
+        """Submissions to starters that were handed out lose nothing."""
+        first, _, every = self.cases.sample
+        levels = years.LEVELS if every == 1 else [years.LEVELS[first % 2]]
+        for year in years.years().values():
+            course = year.course(self.cases.course)
+            # Their numbers are those of then.
+            for level in levels if year.numbers == course.constants else ():
+                started = time.monotonic()
+                taken = submission.Submission({
+                    path.name: path.read_bytes() for path in
+                    (year.unpacked() / level).iterdir()}, starter=year.version)
+                begun = years.begun_with(taken, course)
+                graded = report.combine(course, "case", taken, judge.judge(
+                    self.kit, taken.files, self.tests, 2, year=begun))
+                self.say(f"starter of {year.version}, {level}", [
+                    line for one in graded.graded
+                    if not one.passed and one.task.counted
+                    for line in report.failure(course, one)],
+                    time.monotonic() - started)
+
     def say(self, name: str, faults: list[str], seconds: float) -> None:
         self.passed += not faults
         self.failed += bool(faults)
@@ -217,6 +240,7 @@ def main() -> bool:
         check = Check(Cases())
         if not only:
             programs(check)
+            check.older()
         check.all(only)
     except (markers.MarkerError, tasks.TasksError, once.KitError,
             mistakes.MistakeError) as error:

@@ -25,6 +25,7 @@ BASES = {
     "KIT_CONSTRAINT_BASE": re.compile(
         rf"\b(?:Pin|Plane|Sphere)Constraint{BASE}"),
 }
+NAMESPACE = re.compile(rf"\bnamespace\s{GAP}\w+{GAP}\{{")
 CALL = re.compile(rf"\boperator{GAP}\({GAP}\){GAP}\(")
 # A TearConstraint by another name.
 NAMED_TEAR = re.compile(r"\b(?:using|typedef)\b[^;]{0,300}\bTearConstraint\b")
@@ -103,5 +104,7 @@ def defines(files: dict[str, bytes]) -> tuple[str, ...]:
         ("KIT_PROGRAM",) if needs_program(parts) else ())
     if has_stages(parts):
         main += ("KIT_STAGES",)
+    if NAMESPACE.search(text):
+        main += ("KIT_NAMESPACES",)
     return main + tuple(f"{key}={name}" for key, name in sorted(found.items())
                         if name not in USUAL)

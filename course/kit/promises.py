@@ -5,6 +5,9 @@ or of the contract of a function with a region, that has one of the FORMS; a
 clause is a sentence, an @tag of a contract, or a table's cell below a heading
 that has such a form, as "FIRST CELL: CELL". An entry of course/wrong holds it:
 its words are in `breaks` and it loses a task, or they are in `open`.
+
+What the assignment requires, course/requirements.toml, is on a page of both
+levels and held by a task, a row of the rubric, or a file of tests.
 """
 import functools
 import re
@@ -12,7 +15,9 @@ from collections.abc import Iterator
 
 import markers
 import mistakes
+import pages
 import tasks
+from tasks import tomllib
 
 FORMS = re.compile(
     r"\breturns?\b|\bbecomes\b|\b(?:is|are) (?:0|zero)\b| < |\bown [KL$]"
@@ -71,9 +76,34 @@ def clauses() -> tuple[tuple[str, str, bool], ...]:
            for one in of_source(text)])
 
 
+def unmet() -> Iterator[str]:
+    """Requirements whose words a page lacks, or that nothing holds."""
+    course = tasks.load()
+    texts, folder = {}, tasks.ROOT / "course"
+    rubric = (folder / "rubric.md").read_text("utf-8")
+    file = "course/requirements.toml"
+    for entry in tomllib.loads((tasks.ROOT / file).read_text("utf-8"))[
+            "requirement"]:
+        page = entry["page"]
+        if page not in texts:
+            text = (folder / page).read_text("utf-8")
+            texts[page] = {level: " ".join(pages.of_level(text, level).split())
+                           for level in pages.LEVELS}
+        for level, text in texts[page].items():
+            yield from (f"{file}: '{words}' is not on {page}, level {level}"
+                        for words in entry["words"] if words not in text)
+        for held in entry["held"] or [""]:
+            if not (held in course.tasks.keys() | course.dropped
+                    or held.startswith("**") and held in rubric
+                    or held and (tasks.ROOT / held).is_file()):
+                yield f"{file}: nothing holds '{entry['says']}': '{held}'"
+
+
 def faults() -> list[str]:
     """Promises that nothing holds, and words of entries that nobody says."""
-    found, held, left_open = [], {}, {}
+    found: list[str] = [*unmet()]
+    held: dict[str, str] = {}
+    left_open: dict[str, str] = {}
     for table in mistakes.tables():
         for one in mistakes.read(table):
             if one.name.startswith("allowed: ") and not one.open:

@@ -23,7 +23,8 @@ import tasks
 # Globs in the repository -> the folder of the starter, and what stays out.
 COPIED = [
     ("LICENSE", ".", ""),
-    ("CME212/*.hpp CME212/*.mk", "CME212", "GraphTests.hpp"),
+    ("CME212/*.hpp CME212/*.mk", "CME212", ""),
+    ("test_nodes.cpp test_edges.cpp", ".", ""),
     ("CME212/viewer/*.hpp CME212/viewer/*.cpp", "CME212/viewer", ""),
     ("data/grid*.nodes data/grid*.tets", "data", "grid4.nodes grid4.tets"),
     ("data/README.md", "data", ""),
@@ -83,6 +84,7 @@ def tree(kind: str, level: str = "guided") -> Files:
     add("tests/tasks.inc", table_of(course))
     add("tests/hints", "".join(f"{task.shown}\t{hint}\n" for task in
                                course.tasks.values() for hint in task.hints))
+    add(".starter", f"{course.starter}\n")
     add(".gitignore", (root / "course/starter/gitignore").read_bytes())
     add(".github/workflows/tests.yml", (root / WORKFLOW).read_bytes())
     if level == "open":

@@ -85,6 +85,7 @@ class Submission:
     notes: list[str] = field(default_factory=list)
     flags: list[Flag] = field(default_factory=list)
     left_out: dict[str, str] = field(default_factory=dict)  # name: why
+    starter: str = ""       # the version with which it was begun, if it says so
 
     def add(self, name: str, entry: "Entry") -> None:
         """Take a file, or note why not."""
@@ -308,6 +309,9 @@ def take(folder: Folder, tag: str = "") -> Submission:
     for entry in sorted(entries, key=lambda entry: (entry.path.count("/"),
                                                     entry.path)):
         name = entry.path[len(room):]
+        if entry.path == room + ".starter" and not entry.problem:
+            taken.starter = shown(entry.read()[:80].decode(
+                "ascii", "replace").strip())
         if (entry.path.startswith(room) and name not in HANDED_OUT
                 and name.endswith((".hpp", ".h", ".cpp"))):
             taken.add(name, entry)

@@ -86,6 +86,8 @@ class Course:
     tasks: dict  # id -> Task, in the order of the file; likewise
     dropped: frozenset  # ids of tasks that are not asked for
     numbers: dict  # id of a section -> its number, where that is another
+    starter: str  # the version of what is handed out
+    constants: dict  # [numbers]
     language: str
     words: dict  # English sentence -> sentence of the language; {} is a part
 
@@ -113,7 +115,7 @@ REQUIRED: dict[str, dict[str, type]] = {
     "section": {"title": str, "needs": str},
     "task": {"title": str, "points": int, "says": str, "hint": str}}
 OPTIONAL: dict[str, dict[str, type]] = {
-    "": {"numbers": dict, "language": str},
+    "": {"numbers": dict, "language": str, "starter": str},
     "section": {"page": str, "dropped": bool, "number": str},
     "task": {"tests": list, "hints": list, "extra": bool, "dropped": bool}}
 TYPES = {str: "a text", int: "a whole number", bool: "true or false",
@@ -195,7 +197,8 @@ def parse(text: str, name: str = FILE) -> Course:
                sections or data["task"][task.id].get("dropped")}
     return Course(say(data["title"]), data["tag"], tuple(sections),
                   {id: task for id, task in tasks.items() if id not in dropped},
-                  frozenset(dropped), numbers, data.get("language", "en"),
+                  frozenset(dropped), numbers, data.get("starter", ""),
+                  data.get("numbers", {}), data.get("language", "en"),
                   words)
 
 

@@ -14,9 +14,7 @@ import unittest.mock
 import child
 import constants
 import markers
-import mistakes
 import pages
-import promises
 import starter
 import submission
 import tasks
@@ -194,7 +192,6 @@ class Faults(unittest.TestCase):
         markers.check({"S.hpp": text}, free)  # nothing is asked
 
 
-
 class Tasks(unittest.TestCase):
     def test_what_is_read(self):
         self.assertEqual((COURSE.points, EXTRA.points), (5, 4))
@@ -208,19 +205,14 @@ class Tasks(unittest.TestCase):
         for old, new, line, words in (
                 ("points = 4", "points = four", 12, "at line 12"),
                 ("points = 4\n", "", 10, "'points' is missing"),
-                ("points = 4", 'points = "4"', 10, "not a whole number"),
-                ("points = 4", "points = true", 10, "not a whole number"),
                 ("points = 4", "points = -4", 10, "negative"),
                 ('says = "f() is 1."', 'says = ""', 10, "one line"),
-                ('hint = "Return 1."', 'hint = "a\\nb"', 10, "one line"),
                 ('hint = "Return', 'hints = ["a", 1]\nhint = "Return', 10,
                  "a hint is not a text of one line"),
                 ('hint = "Return', 'note = 1\nhint = "Return', 10,
                  "unknown key 'note'"),
                 ("3.1.f", "3.2.f", 10, "'3.2.f' is no id of a task"),
-                ("3.1.f", "3.1.f-g", 10, "is no id of a task"),
                 ("7.1.g\"]\ntitle", "3.1.f\"]\ntitle", 15, "at line 15"),
-                ('"7.1"', '"3.1"', 7, "at line 7"),
                 ('n."3.1"', 'n."3/1"', 3, "no id of a section"),
                 ('"cloth"', '"silk"', 7, "expected graph, cloth or step"),
                 ('"7.1.g_more"', '"../x"', 15, "names of files"),
@@ -357,7 +349,7 @@ class Repository(unittest.TestCase):
                      "data/grid1.nodes", "tools/submit.sh"):
             self.assertIn(name, files)
         for name in files:
-            self.assertNotRegex(name, r"^lab|^test_|scenes|grid4|(?<!web)\.py$|"
+            self.assertNotRegex(name, r"^lab|scenes|grid4|(?<!web)\.py$|"
                                 r"pages/(README|teach)")
         sources = b"".join(files[name][0] for name in markers.SOURCES)
         marked = "".join(markers.read_sources().values())
@@ -371,7 +363,9 @@ class Repository(unittest.TestCase):
         for kind in ("starter", "solution"):
             starter.write(starter.tree(kind), self.folder / kind)
             taken = submission.take(self.folder / kind)
-            self.assertEqual(set(taken.files), set(markers.SOURCES))
+            self.assertEqual(set(taken.files), {
+                *markers.SOURCES, "test_nodes.cpp", "test_edges.cpp"})
+            self.assertEqual(taken.starter, tasks.load().starter)
             self.assertEqual(taken.flags, [])
 
     def test_make_hint_opens_one_more_each_time(self):
@@ -397,8 +391,8 @@ class Repository(unittest.TestCase):
         self.assertEqual(set(guided) - set(given),
                          {"CME212/SlotMap.hpp", "docs/graph.md"})
         self.assertLess(set(given), set(guided))
-        design = re.compile(rb"Zero(Force|Constraint)|Combined|shared_ptr|SlotM"
-                            rb"ap|virtual ~|GUIDED|// OPEN|<!-- o")
+        design = re.compile(rb"pointers? to\s+.Zero|struct Zero|shared_ptr"
+                            rb"|SlotMap|virtual ~|GUIDED|// OPEN|<!-- o")
         for name, (text, _) in given.items():
             if not re.match(r"tests/|CME212/", name):
                 self.assertIsNone(design.search(text), name)
@@ -420,7 +414,8 @@ class Repository(unittest.TestCase):
                 shutil.copy(tasks.ROOT / f"course/graphs/{graph}/Graph.hpp",
                             folder)
             child.run(["g++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra",
-                       "-Werror", "-I.", "-DSTAGE=tear", "mass_spring.cpp"],
+                       *os.environ.get("CXXFLAGS", "").split(),
+                       "-I.", "-DSTAGE=tear", "mass_spring.cpp"],
                       check=True, cwd=folder)
 
     def test_every_link_of_a_starter_holds(self):
@@ -507,58 +502,13 @@ class Constants(unittest.TestCase):
                              ["", text, ""], path)
 
         for right, wrong, said in (
-                ("0.15", "0,2", "12: Expected .*; a number is written as 0.2"),
-                ("0.15", ".2", "12: Invalid .*; a number is written as 0.2"),
-                ("-0.75", "1", "8"), ("[0.5, ", "[", "8"), ("K =", "k =", "8")):
+                ("0.15", "0,2", "13: Expected .*; a number is written as 0.2"),
+                ("0.15", ".2", "13: Invalid .*; a number is written as 0.2"),
+                ("-0.75", "1", "9"), ("[0.5, ", "[", "9"), ("K =", "k =", "9")):
             with self.assertRaisesRegex(tasks.TasksError,
                                         rf"\Acourse/tasks.toml:{said}.*\Z"):
                 constants.values(self.TEXT.replace(right, wrong, 1))
 
 
-class Child(unittest.TestCase):
-    def test_a_child_ends_with_all_that_it_started(self):
-        # The one that sleeps holds the pipe until it ends, too.
-        with self.assertRaisesRegex(
-                TimeoutError, "^sh -c 'sleep 1000 & wait': ended after 0.1 s, "
-                "the time limit of a test$"):
-            child.run(["sh", "-c", "sleep 1000 & wait"], 0.1,
-                      capture_output=True)
-
-
-class Promises(unittest.TestCase):
-    def test_clauses(self):
-        page = ("## What to write\nIt sorts. `f` returns 1.\n\n"
-                "| f | v becomes | to |\n|---|---|---|\n| `g` | 0 | h |\n"
-                "## Usual mistakes\nIs 0.")
-        self.assertEqual([*promises.of_page(page)], [
-            ("It sorts.", False), ("`f` returns 1.", True), ("`g`: 0", True),
-            ("`g`: h", False)])
-        code = "/** Adds.\n * @post a; b */ int f() {%s BEGIN SOLUTION x"
-        self.assertEqual([*promises.of_source(code % "")], [
-            ("Adds.", False), ("@post a;", True), ("b", True)])
-        self.assertEqual([*promises.of_source(code % " return 1;")], [])
-
-    def test_what_nothing_holds(self):
-        x = frozenset(["x"])
-        breaks = mistakes.Mistake("t", "m", x, breaks=("is 1",))
-        opens = mistakes.Mistake("t", "allowed: n", open=("is 1",))
-        with unittest.mock.patch.multiple(
-                promises, clauses=lambda: (("a.md", "f is 1", True),)):
-            for number, *entries in (
-                    (0, breaks), (0, opens), (1,), (1, breaks, opens),
-                    (1, breaks, mistakes.Mistake("t", "allowed: n")),
-                    (1, mistakes.Mistake("t", "m", breaks=("is 1",))),
-                    (2, mistakes.Mistake("t", "m", x, breaks=("is 2",)))):
-                with unittest.mock.patch.multiple(
-                        mistakes, tables=lambda: ["t"],
-                        read=lambda _, found=entries: found):
-                    self.assertEqual(len(promises.faults()), number)
-
-
 if __name__ == "__main__":
-    result = unittest.TextTestRunner(stream=sys.stdout).run(
-        unittest.defaultTestLoader.loadTestsFromModule(
-            sys.modules["__main__"]))
-    bad = len(result.failures) + len(result.errors)
-    print(f"{result.testsRun - bad} passed, {bad} failed")
-    sys.exit(bad != 0)
+    unittest.main()

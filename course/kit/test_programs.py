@@ -238,7 +238,7 @@ class OwnTests(Programs):
             self.assertEqual(found[name], {
                 "weight": True, "empty": False, "idle": False,
                 "always_fails": False})
-        self.assertFalse(any(found["cloth: a force that is no ZeroForce"]
+        self.assertFalse(any(found["cloth: the acceleration given is ignored"]
                              .values()))
 
     def test_a_test_may_hold_a_page_to_its_words(self):

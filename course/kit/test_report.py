@@ -21,6 +21,7 @@ import report
 import sandbox
 import submission
 import tasks
+import years
 
 sys.path.append(str(once.ROOT / "course/autograder"))
 import classroom50      # noqa: E402: it stands apart from the kit
@@ -223,7 +224,38 @@ Graph.hpp:9:1: error: 'z' was not declared
             using Cloth = Graph<A, B>; using GraphType = Cloth;
             namespace hw { struct Rip { void operator()(Cloth& g, double) {
               g.remove_node(n); } }; }
-            using TearConstraint = hw::Rip;"""}), ())
+            using TearConstraint = hw::Rip;"""}), ("KIT_NAMESPACES",))
+
+    def test_the_starter_of_a_submission(self):
+        """Its line says it, or what was asked for, or the names that it uses;
+        a task has the points of then, or is shown and not counted."""
+        course = tasks.load()
+        old = "struct Node { Real mass; };"
+        for text, line, asked, version in (
+                ("", "", "", ""), ("", course.starter, "2026-11-25", ""),
+                ("", "2026-11-27", "", "2026-11-27"),
+                (old, "", "", "2026-11-25"),
+                (old, "", "2026-11-27", "2026-11-27"),
+                (old, "2026-11-27", "2026-11-25", "2026-11-27"),
+                ("using Real = float;" + old, "", "", ""),
+                ("// Real\n", "", "", "")):
+            taken = submission.Submission({"a.hpp": text.encode()},
+                                          starter=line)
+            year = years.begun_with(taken, course, asked)
+            self.assertEqual(year.version if year else "", version, text)
+            self.assertEqual(taken.notes, [
+                f"begun with the starter of {version}"] * bool(version))
+        for line, asked in ("1999", ""), ("", "../x"):
+            with self.assertRaisesRegex(submission.BadInput,
+                                        "does not know: .*2026-11-25"):
+                years.begun_with(submission.Submission({}, starter=line),
+                                 course, asked)
+        then = years.years()["2026-11-25"].course(course)
+        self.assertEqual(then.points, 100)
+        self.assertEqual(then.tasks["5.1.DampingForce"].points, 3)
+        self.assertTrue(then.tasks["5.1.ZeroForce"].extra)
+        # Each that was handed out is here, and today's last.
+        self.assertEqual(max(years.years()), course.starter)
 
 
 class Mend(unittest.TestCase):

@@ -1,7 +1,7 @@
 """Grade a class:  make class DIR=clones OUT=grades [HW=hw2] [DUE='...']
 
     DIR=DIR OUT=OUT [HW=TAG] [DUE=TIME] [TIMES=FILE]
-      [FEEDBACK=names] [SAFE=0] [JOBS=N]
+      [FEEDBACK=names] [STARTER=VERSION] [SAFE=0] [JOBS=N]
       python3 course/kit/whole_class.py
 
 DIR holds a folder for each student, as grade.py takes one; dates.py says what
@@ -35,6 +35,7 @@ import once
 import ranking
 import submission
 import tasks
+import years
 
 KEPT = "kept"
 
@@ -44,6 +45,7 @@ class Row:
     """A student, and what became of the submission."""
     student: str               # the folder in DIR
     content: str = ""          # of its sources: a digest
+    year: years.Year | None = None     # of an older starter
     made: dates.Made = field(default_factory=dates.Made)
     notes: list = field(default_factory=list)
     flags: list = field(default_factory=list)
@@ -83,6 +85,7 @@ class Class:
         self.feedback = grade.feedback()
         self.jobs = grade.number_of_jobs(get("JOBS"))
         self.unsafe = get("SAFE") == "0"
+        self.starter = get("STARTER") or ""
         self.course = tasks.load()
         self.tests = grade.tests_of(self.course)
         self.kept = self.out / KEPT
@@ -103,8 +106,9 @@ class Class:
 
     # ------------------------------------------------------- By one worker
 
-    def take(self, student: str) -> tuple[submission.Submission, str]:
-        """The submission and its digest."""
+    def take(self, student: str) -> tuple[
+            submission.Submission, years.Year | None, str]:
+        """The submission, its starter and its digest."""
         signal.signal(signal.SIGALRM, grade.too_long)
         signal.alarm(grade.READING)
         try:
@@ -112,10 +116,11 @@ class Class:
                                     self.tag)
         finally:
             signal.alarm(0)
-        digest = hashlib.sha256()
+        year = years.begun_with(taken, self.course, self.starter)
+        digest = hashlib.sha256(year.version.encode() if year else b"")
         for name, text in sorted(taken.files.items()):
             digest.update(f"{name}\0{len(text)}\0".encode() + text)
-        return taken, digest.hexdigest()[:32]
+        return taken, year, digest.hexdigest()[:32]
 
     def read(self, student: str) -> Row:
         row, folder = Row(student), os.path.join(self.folder, student)
@@ -125,7 +130,7 @@ class Class:
             if self.tag and self.tag in submission.tags(folder, self.tag):
                 row.made = dates.made(folder, self.tag)
                 row.made.pushed = self.times.get(row.made.commit)
-            taken, row.content = self.take(student)
+            taken, row.year, row.content = self.take(student)
             row.notes, row.flags = taken.notes, taken.flags
         except submission.BadInput as error:
             row.reason = str(error).removeprefix(
@@ -155,13 +160,13 @@ class Class:
         if not left:
             return "", 0
         before = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
-        taken, now = self.take(student)
+        taken, year, now = self.take(student)
         if now != content:
             return "it changed while the class was graded", 0
         judge.prepare(self.kit, self.tests, 1)      # it is in use
         assert self.kit.answers
-        for test, result in judge.judge(self.kit, taken.files, left,
-                                        1).items():
+        for test, result in judge.judge(self.kit, taken.files, left, 1,
+                                        year=year).items():
             kept = dataclasses.asdict(result)
             answers = kept.pop("answers")
             if test == ranking.TASK and result.passed:

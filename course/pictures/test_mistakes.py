@@ -27,7 +27,6 @@ PASSAGES = [
     ("5.1", "rises to {energy:.0f} J within 0.3 s", "gravity twice", "forces",
      0.3),
     ("5.1", "{energy:.0f} J at 1.2 s", "+ c v", "forces", 1.2),
-    ("5.1", "{energy:.0f} J at 3 s", "+ c v", "forces", 3),
     ("5.1", "the energy falls to {energy:.1f} J at 3 s", "damped", "forces", 3),
     ("6.1", "it falls to {energy:.1f} J", "", "constraints", 3),
     ("6.1", "the energy rises to {energy:.0f} J at 3 s", "floor keeps v",

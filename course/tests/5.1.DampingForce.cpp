@@ -120,7 +120,6 @@ static void compare_damping_of_a_graph(const Bodies& b) {
 TASK("5.1.DampingForce", damping_slows) {
   const Bodies b = four_bodies();
   with<KIT_FORCE(DampingForce)>("DampingForce", [&]<typename F>() {
-    check_is_force<F>("DampingForce");
     for (double number : {4., 0.375}) compare_damping<F>(b, number);
     compare_two_dampings<F>(b);
     compare_damping_of_a_graph<F>(b);

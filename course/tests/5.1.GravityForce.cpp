@@ -13,7 +13,6 @@ TASK("5.1.GravityForce", gravity_is_the_weight) {
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(GravityForce)>("GravityForce", [&]<typename F>() {
-    check_is_force<F>("GravityForce");
     const Owned<F> gravity(made_force<F>("GravityForce", g, 9.81));
     for (int i = 0; i < b.size; ++i) {
       DID("a node of mass ", b.m[i], " kg at ", b.x[i], " with velocity ",

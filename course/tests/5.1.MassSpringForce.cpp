@@ -9,7 +9,6 @@ static void compare_springs(const Bodies& b, double K) {
   Cloth g;
   fill(g, b);
   with<KIT_FORCE(MassSpringForce)>("MassSpringForce", [&]<typename F>() {
-    check_is_force<F>("MassSpringForce");
     const Owned<F> springs(made_force<F>("MassSpringForce", g, given_K));
     for (int i = 0; i < b.size; ++i) {
       const Point force = force_on(*springs, g, i);

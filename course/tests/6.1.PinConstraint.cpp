@@ -60,7 +60,6 @@ static void check_pins(const char* which, Bodies b) {
 
 TASK("6.1.PinConstraint", pin_puts_corners_back) {
   with<KIT_CONSTRAINT(PinConstraint)>("PinConstraint", []<typename Pin>() {
-    check_is_constraint<Pin>("PinConstraint");
     Bodies b = cloth_with_corners();
     check_pins<Pin>("a cloth", b);
     double rank[Bodies::most];

@@ -24,7 +24,6 @@ TASK("6.1.SphereConstraint", sphere_is_solid) {
   Cloth g;
   fill(g, b);
   with<KIT_CONSTRAINT(SphereConstraint)>("SphereConstraint", [&]<typename C>() {
-    check_is_constraint<C>("SphereConstraint");
     auto sphere = made_sphere<C>();
     constrain(sphere, g);
     with_ball<C>([](auto& ball, Cloth& other) {

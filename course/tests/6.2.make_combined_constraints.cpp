@@ -1,10 +1,18 @@
 /** @file 6.2.make_combined_constraints.cpp
- * Two and three constraints in their order, made from temporaries. */
+ * Two and three constraints in their order, made from temporaries, or from a
+ * vector of pointers to the parent class. */
 #include "cloth.hpp"
 
 namespace kit {
 
-/** The submission's combination of these, by either name; or Missing. */
+/** A copy that lives on: a list may hold its address. */
+template <typename C>
+static C& kept(const C& c) {
+  static std::list<C> all;
+  return all.emplace_back(c);
+}
+/** The submission's combination of these, by any of its names, from the parts
+ * or from a vector of pointers to them; or Missing. */
 template <typename... Cs>
 static auto constraints_of(Cs&&... cs) {
   if constexpr (must_compile || requires {
@@ -24,7 +32,12 @@ static auto constraints_of(Cs&&... cs) {
                      })
     return ::CombinedConstraints(std::forward<Cs>(cs)...);
   else
-    return Missing();
+    return made_of_list<ConstraintParent>(
+        []<typename List>(List&& list) -> decltype(::CombinedConstraints(
+                                           std::forward<List>(list))) {
+          return ::CombinedConstraints(std::forward<List>(list));
+        },
+        kept(cs)...);
 }
 template <typename All>
 static void apply(All& all, Cloth& g, double t, int how_many) {
@@ -56,7 +69,7 @@ static C part() {
 
 /** Apply @a all, and compare with the first @a how_many parts. */
 template <typename All>
-static void compare_combined(All all, const Bodies& b, int how_many) {
+static void compare_combined(All& all, const Bodies& b, int how_many) {
   const double t = 2;
   Cloth g;
   fill(g, b);

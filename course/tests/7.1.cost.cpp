@@ -150,7 +150,9 @@ static double cost(G& g, Call call, double limit) {
       if (same(at, end)) continue;  // it lost all its edges
       // In turn the first one and the last, which mostly were added from either
       // end: some find an edge from one alone, which is of another task, too.
-      for (auto next = at; i % 2 == 1 && !same(++next, end);) at = next;
+      int behind = 0;  // an iterator that counts need not be assignable
+      for (auto next = at; i % 2 == 1 && !same(++next, end);) ++behind;
+      while (behind-- > 0) ++at;
       auto e = *at;
       if (call == edge_value_is_read) {
         if constexpr (HasValue<decltype(e)>) {

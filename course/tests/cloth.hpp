@@ -16,6 +16,7 @@
  *   KIT_GRAPH             the type of the cloth; else GraphType
  *   KIT_FORCE_BASE        the base of the forces; else ZeroForce or Force
  *   KIT_CONSTRAINT_BASE   of the constraints; else ZeroConstraint, Constraint
+ *   KIT_NAMESPACES        there are namespaces, which may hide these bases
  *   KIT_TEAR              the constraint that removes nodes */
 #ifndef KIT_CLOTH_HPP
 #define KIT_CLOTH_HPP
@@ -111,6 +112,7 @@ struct PinConstraint;
 struct PlaneConstraint;
 struct SphereConstraint;
 struct TearConstraint;
+struct CombinedForces;
 struct CombinedConstraints;
 struct Ball;
 struct Missing {};

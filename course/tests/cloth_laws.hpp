@@ -146,39 +146,109 @@ using TestConstraint =
     decltype(child_of_one_of<FreeConstraint, ::KIT_CONSTRAINT_BASE,
                              ::ZeroConstraint, ::Constraint>())::type;
 
-template <typename C, typename Base>
-constexpr bool inherits_from() {
-  if constexpr (Complete<Base>)
-    return std::is_convertible_v<C*, Base*>;
+template <typename C>
+constexpr bool has_virtual() {
+  if constexpr (Complete<C>)
+    return std::is_polymorphic_v<C>;
   else
     return false;
 }
 /** Is @a F a class with virtual calls, and Free all that a test can make? */
 template <typename F, typename Free>
 constexpr bool base_is_unknown() {
-  if constexpr (Complete<F>)
-    return std::is_polymorphic_v<F> && (std::is_same_v<TestForce, Free> ||
-                                        std::is_same_v<TestConstraint, Free>);
+  return has_virtual<F>() && (std::is_same_v<TestForce, Free> ||
+                              std::is_same_v<TestConstraint, Free>);
+}
+
+/** The first of these classes that has virtual functions, or else void. */
+template <typename First, typename... Others>
+auto first_parent() {
+  if constexpr (has_virtual<First>())
+    return std::type_identity<First>();
+  else if constexpr (sizeof...(Others) > 0)
+    return first_parent<Others...>();
+  else
+    return std::type_identity<void>();
+}
+using ForceParent =
+    decltype(first_parent<::KIT_FORCE_BASE, ::ZeroForce, ::Force>())::type;
+using ConstraintParent =
+    decltype(first_parent<::KIT_CONSTRAINT_BASE, ::ZeroConstraint,
+                          ::Constraint>())::type;
+/** Is the parent in a namespace, where no test can name it? */
+template <typename Parent, typename Child>
+constexpr bool parent_is_hidden() {
+#ifdef KIT_NAMESPACES
+  return std::is_void_v<Parent> && has_virtual<Child>();
+#else
+  return false;
+#endif
+}
+/** Run @a test<Parent>(), or fail if there is no such class that can be made by
+ * itself and have children. */
+template <typename Parent, typename Free, typename Test>
+void with_parent(const char* name, Test test) {
+  const std::string wanted =
+      words("a class ", name, " with a virtual operator(), ");
+  if constexpr (std::is_void_v<Parent>)
+    fail(words(wanted, "the parent of the others"), "none");
+  else if constexpr (!std::is_default_constructible_v<Parent>)
+    fail(words(wanted, "that does nothing by itself"),
+         "one that can't be made by itself, from nothing");
+  else if constexpr (!HasChild<Parent, Free>)
+    fail(words(wanted, "from which a test can derive"), "another class");
+  else
+    test.template operator()<Parent>();
+}
+/** Is C there, and derived from Parent, publicly? */
+template <typename C, typename Parent>
+constexpr bool inherits_from() {
+  if constexpr (Complete<C>)
+    return std::is_convertible_v<C*, Parent*>;
   else
     return false;
 }
+template <typename C, typename Parent>
+void check_inherits(const char* child, const char* parent) {
+  check(!Complete<C> || inherits_from<C, Parent>(),
+        words(child, " to inherit from ", parent, ", publicly"));
+}
 
-/** A force of the submission is a child of one of its base classes, if there
- * is any with a virtual call; so is a constraint. */
-template <typename C, typename... Bases>
-void check_inherits(const char* child, const char* base) {
-  if constexpr ((HasVirtualCall<Bases> || ...))
-    check((inherits_from<C, Bases>() || ...),
-          words(child, " to inherit from ", base, ", publicly"));
+template <typename Ptr, typename F>
+Ptr pointer_to(F& part) {
+  if constexpr (std::is_pointer_v<Ptr>)
+    return &part;
+  else
+    return Ptr(new F(part));
 }
-template <typename F>
-void check_is_force(const char* name) {
-  check_inherits<F, ::KIT_FORCE_BASE, ::ZeroForce, ::Force>(name, "ZeroForce");
+/** make(list) of a vector of pointers to these parts, which have to outlive
+ * what is made: of the first of these kinds of pointer that it takes. */
+template <typename Ptr, typename... Others, typename Make, typename... Parts>
+auto made_of_first(Make make, Parts&... parts) {
+  using List = std::vector<Ptr>;
+  if constexpr (std::is_invocable_v<Make, List> ||
+                std::is_invocable_v<Make, List&>) {
+    static List list;  // some keep a reference
+    list.clear();
+    (list.push_back(pointer_to<Ptr>(parts)), ...);
+    if constexpr (std::is_invocable_v<Make, List>)
+      return make(std::move(list));
+    else
+      return make(list);
+  } else if constexpr (sizeof...(Others) > 0) {
+    return made_of_first<Others...>(make, parts...);
+  } else {
+    return Missing();
+  }
 }
-template <typename C>
-void check_is_constraint(const char* name) {
-  check_inherits<C, ::KIT_CONSTRAINT_BASE, ::ZeroConstraint, ::Constraint>(
-      name, "ZeroConstraint");
+template <typename Parent, typename Make, typename... Parts>
+auto made_of_list(Make make, Parts&... parts) {
+  if constexpr (std::is_void_v<Parent>)
+    return Missing();
+  else
+    return made_of_first<Parent*, const Parent*, std::shared_ptr<Parent>,
+                         std::shared_ptr<const Parent>, std::unique_ptr<Parent>,
+                         std::unique_ptr<const Parent>>(make, parts...);
 }
 
 inline TestConstraint no_constraint() {

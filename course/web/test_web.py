@@ -216,7 +216,8 @@ def figures_run_on_one_clock_and_only_where_they_are_seen(b):
     assert b.value("all[0].panes.join()") == "0"
     gaps = b.value("all[0].cloths.map(c => c.failure ? 0 :"
                    " Math.abs(c.time - all[0].clock))")
-    assert max(gaps) < 0.0051, gaps
+    # Two steps and a frame of at most 0.05 s, 10 times slower.
+    assert max(gaps) < 0.0071, gaps
     b.value("scrollTo(0, 1e5)")
     b.wait("all[2].clock > 0.3 && !all[0].seen")
     assert b.value("all[2].sides.length") == 2

@@ -21,8 +21,7 @@ ROUGH = 1e-3  # the smallest of the errors that a title calls rough [m]
 LEFT, CELL, ROW = 164, 79, 58  # [pixels]
 SHORT = {"symplectic-euler": "symp. euler",
          "mollified-impulse": "impulse",
-         "implicit-euler": "impl. euler",
-         "fast-mass-spring": "fast spring"}
+         "implicit-euler": "impl. euler"}
 
 
 def times(run: Run) -> str:

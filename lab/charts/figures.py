@@ -15,6 +15,7 @@ import sys
 from typing import Any, Callable
 
 import decision
+import panels
 import peers
 from results import (ROOT, Run, Table, by_method, cheapest, cost_at, ns_a_node,
                      runs, tied)
@@ -34,6 +35,11 @@ def table(path: str) -> Table:
 
 
 # ---- What an expression may use
+
+def methods() -> int:
+    """How many methods there are."""
+    return len(panels.styles())
+
 
 def of(scene: str, method: str | None = None) -> list[Run]:
     """Runs of work_precision.csv; of peers.csv if scene is 'peers NAME'."""
@@ -138,16 +144,6 @@ def bench(nodes: str, name: str, beside: str) -> float:
 def advice(which: str) -> float:
     """A figure of the suite of questions: lab/advice/suite.py."""
     return suite.rates(table("advice/results/adviser.csv").rows)[which]
-
-
-def round_of(nodes: str, K: str, method: str, rounds: int,
-             what: str = "work") -> float:
-    """A row of rounds.csv: work [force evaluations], or a distance over the
-    way that the cloth moves in the step [%]."""
-    row = table("bench/results/rounds.csv").where(
-        nodes=nodes, K=K, method=method, rounds=str(rounds))[0]
-    return (float(row[what]) if what == "work" else
-            100 * float(row[what]) / float(row["moved"]))
 
 
 def refined(what: str, column: str, k: int = -1) -> float:

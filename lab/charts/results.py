@@ -12,25 +12,15 @@ from typing import Any, Callable
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COARSE = 0.01  # the largest error that is wanted, of a cloth of 1 m [m]
 TIE = 0.9  # a cost of which the least one is more than this share ties with it
-RATIOS = "lab/bench/results/rounds.csv"  # instructions of a step
 TRUSTED = 10  # an error below so many floors says nothing
 
 
 Cost = Callable[["Run"], float]
 Segment = tuple[str, float, float]  # method, from, to
-Costs = tuple[dict[str, tuple[float, float, float]], tuple[float, ...]]
 
 
 class ChartError(Exception):
     """A chart that can't be drawn, and why, in one line."""
-
-
-def match(pattern: str, text: str, flags: int = 0) -> re.Match[str]:
-    """re.search() of what has to be there."""
-    found = re.search(pattern, text, flags)
-    if not found:
-        raise ChartError(f"there is no '{pattern}'")
-    return found
 
 
 def ns_a_node(path: pathlib.Path) -> dict[tuple[int, str], Any]:
@@ -84,30 +74,12 @@ class Table:
                 if all(row[k] == v for k, v in wanted.items())]
 
 
-def solver_costs() -> Costs:
-    """What methods spend on more than forces, in force evaluations, by the
-    instructions that `make rounds-chart` counts: {method: (cost of a step over
-    its force evaluations, of an inner step, once)}; and for Newton's methods
-    that of a linear system, of a product with its matrix and of its factor."""
-    lines = (ROOT / "lab/charts/methods.csv").read_text().splitlines()
-    each = {line.split(",")[0]: int(line.split(",")[3]) for line in lines
-            if not line.startswith("#")}
-    text = (ROOT / RATIOS).read_text()
-    factor = float(match("# the factor of .*: (.*)", text)[1])
-    costs = {m: (float(cost) / each[m], 0., 0. if m == "xpbd" else factor)
-             for m, cost in re.findall(
-                 r"# a step at verlet's limit ([\w-]+): ([\d.]+)", text)}
-    name, step, inner = match(
-        r"# ([\w-]+) on mixed: (.*) a step, (.*) an inner step", text).groups()
-    costs[name] = (float(step), float(inner), 0)
-    (system, product), (by_factor, _) = (
-        map(float, match(f"# 25 x 25 newton-{by}: .* once, (.*) a round, "
-                             "(.*) a product", text).groups())
-        for by in ("gradients", "factor"))
-    return costs, (system - 1, product, by_factor - system)
-
-
-SOLVERS, NEWTON = solver_costs()
+# What methods spend on more than forces, in force evaluations: instructions on
+# 25 x 25 nodes, counted once by callgrind, in code that was not kept.
+# {method: (cost of a step over its force evaluations, of an inner step)}.
+SOLVERS = {"xpbd": (41.1, 0.), "mollified-impulse": (3.65, 0.114)}
+# A linear system of Newton's method, a product with its matrix, its factor.
+NEWTON = 12.5, 2.64, 83.
 
 
 @dataclass(frozen=True)
@@ -131,8 +103,8 @@ class Run:
         """Counted, in force evaluations. What a run does besides counts
         by its instructions."""
         if self.method in SOLVERS:
-            each, inner, once = SOLVERS[self.method]
-            return self.evaluations * each + self.inner * inner + once
+            each, inner = SOLVERS[self.method]
+            return self.evaluations * each + self.inner * inner
         return self.evaluations + sum(
             n * cost for n, cost in zip(self.solves, NEWTON))
 

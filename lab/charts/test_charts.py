@@ -1,10 +1,9 @@
 """Tests of what charts say: who is the fastest at an error, in the bars of
-work and precision, in the cells of the decision chart and in the titles:
+work and precision and in the cells of the decision chart; their colors:
 python3 lab/charts/test_charts.py"""
 import math
 import random
 import re
-import sys
 import unittest
 from dataclasses import replace
 from itertools import chain, combinations
@@ -12,7 +11,6 @@ from itertools import chain, combinations
 import decision
 import panels
 import peers
-import precision
 from results import (COARSE, ROOT, TRUSTED, Run, Table, cheapest,
                      runs, tied, winners)
 
@@ -127,37 +125,6 @@ class Measured(unittest.TestCase):
                     compared += 1
         self.assertGreater(compared, 40)
 
-    def test_titles_say_what_the_rule_says(self):
-        for scene, some in self.scenes.items():
-            title = precision.message(winners(some, seconds))
-            found = re.fullmatch(r"Least time: (\S+) above (\S+) m, below "
-                                 r"it (?:mostly )?(\S+)", title)
-            if not found:
-                self.assertRegex(title, r"^\S+ is the fastest at ")
-                continue
-            first, bound, most = found[1], float(found[2]), found[3]
-            self.assertEqual(cheapest(bound * 1.06, some, seconds).method,
-                             first, title)
-            self.assertNotEqual(cheapest(bound / 1.06, some, seconds).method,
-                                first, title)
-            finer = (bound / 10 ** (0.1 * k) for k in range(1, 150))
-            chosen = [best.method for best in
-                      (cheapest(e, some, seconds) for e in finer) if best]
-            self.assertEqual(max(set(chosen), key=chosen.count), most, title)
-
-    def test_the_decision_chart_says_what_most_cells_say(self):
-        answers = {s: decision.answers_of(r) for s, r in self.scenes.items()}
-        said = re.findall(r" ([\w-]+)(?:,|$)", decision.message(answers))
-        self.assertEqual(len(said), 3)
-        for method, contact, fine in zip(said, (False, False, True),
-                                         (False, True, None)):
-            chosen = [r.method for s, row in answers.items()
-                      for wanted, r in zip(decision.WANTED, row)
-                      if r and (s in dict(decision.KINDS)["contact"]) == contact
-                      and fine in (None, wanted < 0.99e-3)]
-            self.assertEqual(max(map(chosen.count, chosen)),
-                             chosen.count(method))
-
     def test_noise_of_time_changes_no_cell(self):
         source = random.Random(1)
         for some in self.scenes.values():
@@ -166,14 +133,6 @@ class Measured(unittest.TestCase):
             for a, b in zip(decision.answers_of(some),
                             decision.answers_of(noisy)):
                 self.assertEqual(a and (a.method, a.dt), b and (b.method, b.dt))
-
-    def test_solves_count(self):
-        for method, more in (("verlet", 1), ("fast-mass-spring", 2),
-                             ("xpbd", 20), ("implicit-euler", 3)):
-            one = replace(run(method, 1e-3, 1, evaluations=100),
-                          solves=(20, 10, 1) if more == 3 else (0, 0, 0))
-            self.assertGreaterEqual(one.work, 100 * more)
-            self.assertTrue(more > 1 or one.work == 100)
 
     def test_ties_are_named(self):
         some = [run("a", 1e-3, 100), run("b", 1e-4, 109), run("c", 1e-4, 120)]
@@ -212,43 +171,6 @@ class Libraries(unittest.TestCase):
         theirs = [run("gsl-b", error, 0, 9) for error in (1e-3, 1e-5)]
         self.assertEqual(peers.factors(1e-4, self.OURS + theirs, seconds), {})
 
-    def test_the_title_tells_of_a_lead(self):
-        ours = [*self.OURS, run("a", 1e-7, 100)]
-        for factor, words in (
-                (1.51, "needs fewer force evaluations; at 1e-6 m they need "
-                       "1.5 to 1.5 times as many"),
-                (0.505, "needs over 50 % fewer force evaluations")):
-            theirs = [replace(r, method="gsl-b", evaluations=factor *
-                              r.evaluations) for r in ours]
-            self.assertIn(words, peers.message([ours + theirs]))
-
-
-class Words(unittest.TestCase):
-    def test_two_digits(self):
-        for value, text in ((1.34e-5, "1.3e-5"), (2e-3, "2e-3"),
-                            (9.96e-11, "1e-10"), (0.05, "5e-2")):
-            self.assertEqual(panels.digits(value), text)
-
-    def test_titles(self):
-        cases: tuple[tuple[list, str], ...] = (
-                ([], "No run is stable and above the reference's own error"),
-                ([("a", 1e-2, 1e-9)], "a is the fastest at every error"),
-                ([("a", 1e-2, 2e-3), ("b", 2e-3, 1e-9)],
-                 "Least time: a above 2e-3 m, below it b"),
-                ([("a", 1e-2, 5e-3), ("b", 5e-3, 1e-6), ("c", 1e-6, 1e-7),
-                  ("d", 1e-7, 1e-9)],
-                 "Least time: a above 5e-3 m, below it mostly b"))
-        for segments, title in cases:
-            self.assertEqual(precision.message(segments), title)
-
-    def test_a_title_passes_over_what_is_narrower_than_a_tenth_decade(self):
-        for width, title in ((0.09, "a is the fastest at every error"),
-                             (0.11, "a is the fastest at most errors")):
-            end = 1e-3 * math.pow(10, -width)
-            self.assertEqual(precision.message(
-                [("a", 1e-2, 1e-3), ("b", 1e-3, end), ("a", end, 2e-4)]),
-                title)
-
 
 class Pictures(unittest.TestCase):
     pictures: dict[str, str] = {}
@@ -261,18 +183,14 @@ class Pictures(unittest.TestCase):
 
     def test_texts_have_11_pixels_where_a_picture_has_800(self):
         self.assertGreater(len(self.pictures), 12)
-        small = []
         for name, svg in self.pictures.items():
             width = float(re.findall('viewBox="0 0 ([0-9.]+)', svg)[0])
             least = min(map(float, re.findall(
                 r'font: (?:bold |700 )?([0-9.]+)px', svg)))
-            if least * 800 < 11 * width:
-                small.append((name, least * 800 / width))
-        self.assertEqual(small, [])
+            self.assertGreaterEqual(least * 800, 11 * width, name)
 
-    def test_no_picture_is_large_or_dated_or_without_a_dark_mode(self):
+    def test_no_picture_is_dated_or_without_a_dark_mode(self):
         for name, svg in self.pictures.items():
-            self.assertLessEqual(len(svg), 150_000, name)
             self.assertNotIn("dc:date", svg, name)
             self.assertIn("prefers-color-scheme: dark", svg, name)
 
@@ -334,9 +252,4 @@ class Colors(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    result = unittest.TextTestRunner(stream=sys.stdout).run(
-        unittest.defaultTestLoader.loadTestsFromModule(
-            sys.modules["__main__"]))
-    bad = len(result.failures) + len(result.errors)
-    print(f"{result.testsRun - bad} passed, {bad} failed")
-    sys.exit(bad != 0)
+    unittest.main()

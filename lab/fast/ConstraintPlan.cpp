@@ -13,14 +13,17 @@ namespace lab {
 
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to) {
-  if (ball.holds(from) || ball.holds(to)) return std::nullopt;
   const Point way = to - from, start = from - ball.center;
+  if (norm(start) < (1 - 1e-6) * ball.radius) return std::nullopt;
   // |start + s way| = radius, of the two s the smaller one
   const double a = normSq(way), b = dot(start, way);
   const double c = normSq(start) - ball.radius * ball.radius;
   const double root = b * b - a * c;
   if (!(root > 0) || b >= 0 || -b >= a) return std::nullopt;
   const Point on = start + (c / (-b + std::sqrt(root))) * way;
+  // One that slides along the surface, or ends below it, leaves near by.
+  const bool inside = ball.holds(from) || ball.holds(to);
+  if (inside && dot(on, to - ball.center) >= 0) return std::nullopt;
   return ball.center + (1 - 1e-9) * on;
 }
 
@@ -261,6 +264,9 @@ std::optional<Point> ConstraintPlan::first_hit(const Point& from,
   std::optional<Point> first;
   for (const auto& leaf : leaves_) {
     if (!leaf->traits().obstacle) continue;
+    // A ball that tears removes what ends in it.
+    if (!leaf->traits().nodewise && leaf->traits().obstacle->holds(to))
+      continue;
     const auto place = lab::first_hit(*leaf->traits().obstacle, from, to);
     if (place && (!first || norm(*place - from) < norm(*first - from)))
       first = place;

@@ -151,8 +151,9 @@ void for_each_violating(Cloth& g, unsigned first, unsigned last,
 }
 
 /** The first point, to round-off, of the line @a from one place @a to another
- * that is inside @a ball, if that contains neither end: a node on that line
- * would tunnel through it. nullopt if there is none. */
+ * that is inside @a ball, if a node on that line would tunnel through it:
+ * @a from is not inside, and @a to is beyond it or in the half that is turned
+ * away from that point. nullopt if there is none. */
 std::optional<Point> first_hit(const Ball& ball, const Point& from,
                                const Point& to);
 

@@ -94,23 +94,4 @@ struct Matrix3 {
   return good;
 }
 
-// The same for a number instead of a matrix.
-[[gnu::always_inline]] inline void add(double& to, double a) { to += a; }
-[[gnu::always_inline]] inline Four times(double a, const Four& x) {
-  return a * x;
-}
-[[gnu::always_inline]] inline Four transposed_times(double a, const Four& x) {
-  return a * x;
-}
-[[gnu::always_inline]] inline void subtract(double& to, double from,
-                                            double by) {
-  to -= from * by;
-}
-[[gnu::always_inline]] inline void multiply(double& a, double by) { a *= by; }
-[[gnu::always_inline]] inline bool invert_factor(double& d, double before) {
-  const double square = d;
-  d = 1 / std::sqrt(square);
-  return square > 1e-15 * before && square < HUGE_VAL;
-}
-
 }  // namespace lab

@@ -127,7 +127,15 @@ void Live::set_method(const MethodEntry& method) {
 /** Use the forces of @a m. */
 void Live::change_forces(const Model& m) {
   for (Side* side : sides()) side->scene->change_forces(m), side->mark();
+  fit_step();
   tune();
+}
+
+/** Choose a chosen step anew if it is above the limit now. */
+void Live::fit_step() {
+  const TimeStep step = scene().stepper().time_step();
+  if (!step.fixed() && scene().dt() > main_->safe_limit && main_->runs())
+    set_step(main_->method, step);
 }
 
 std::vector<Live::Side*> Live::sides() {
@@ -255,6 +263,34 @@ bool Live::step() {
     s.check();
   }
   return !done();
+}
+
+Live::Limit Live::least_limit() const {
+  Limit least = {scene().safe_limit()};
+  if (changes_.empty()) return least;
+  Live ahead(model(), scene().mesh().mesh);
+  for (const Change& c : ahead.changes_) {
+    ahead.make(c.request);
+    if (const double limit = ahead.scene().safe_limit(); limit < least.limit)
+      least = {limit, c.time};
+  }
+  return least;
+}
+
+void Live::archive(Archive& a) {
+  std::string made;
+  for (std::size_t k = 0; k < next_; ++k) made += changes_[k].request + '\n';
+  a(made);
+  if (!a.loads()) return;
+  for (std::size_t at = 0, end; at < made.size(); at = end + 1, ++next_) {
+    end = made.find('\n', at);
+    const std::string request = made.substr(at, end - at);
+    if (next_ == changes_.size() || changes_[next_].request != request)
+      throw SceneError("at",
+                       "does not begin with the changes that were made "
+                       "until the checkpoint");
+    make(request);
+  }
 }
 
 bool Live::check() {

@@ -151,6 +151,21 @@ class Live {
   long long calls() const { return calls_; }
   /** The number of changes that are still to be made. */
   std::size_t changes_left() const { return changes_.size() - next_; }
+  /** A stability limit [s], and the time of the change that brings it [s]. */
+  struct Limit {
+    double limit, since = 0;
+  };
+  /** The shortest limit of the run: Scene::safe_limit() now, and after each
+   * change of Model::at, made without a step.
+   * Complexity: a scene from the mesh; for each change, as safe_limit() */
+  Limit least_limit() const;
+  /** The first words of the changes that a checkpoint can hold. */
+  static constexpr std::array<std::string_view, 6> archived = {
+      "stiffness", "drag", "gravity", "cut", "unpin", "method"};
+  /** Save the changes that were made, or make them in a scene at t = 0, whose
+   * own archive comes next.  @pre all are archived
+   * Throws SceneError: the scene has other changes */
+  void archive(Archive& a);
 
   /** The model with all changes of forces: what sliders show. */
   const Model& model() const { return scene().model(); }
@@ -228,6 +243,7 @@ class Live {
   void set_step(const MethodEntry& method, const TimeStep& step);
   void set_method(const MethodEntry& method);
   void change_forces(const Model& m);
+  void fit_step();
   void compare(const std::vector<Lane>& rivals);
   std::vector<Lane> at_equal_work(
       const std::vector<const MethodEntry*>& methods) const;

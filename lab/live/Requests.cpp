@@ -183,6 +183,7 @@ Live::Table::Table() {
   on("unpin", plain, [](Live& live, unsigned node) {
     live.each_running([&](Scene& s) { s.unpin(live.id_of(node)); });
     live.main_->mark();
+    live.fit_step();
     live.tune();
   });
   on("toggle", expand, [](Live& live, unsigned node) {

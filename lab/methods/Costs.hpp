@@ -26,7 +26,6 @@ inline constexpr auto method_costs = std::to_array<MethodCost>({
     {"implicit-euler", 43, 223},       //
     {"implicit-midpoint", 79.1, 231},  //
     {"tr-bdf2", 71.8, 134},            //
-    {"fast-mass-spring", 42.8, 42.8},  //
     {"xpbd", 50.5, 50.9},              //
 });
 

@@ -130,8 +130,8 @@ class ImplicitStage {
   std::vector<double> diagonal_;          // m + s c [kg]
   std::vector<Point> residual_, step_, rest_, z_, direction_, product_;
   LinearSolver solver_ = LinearSolver::automatic;
-  SparseCholesky<Matrix3> factor_;  // of A without negative stiffness
-  std::vector<SparseCholesky<Matrix3>::Pair> pairs_;
+  SparseCholesky factor_;  // of A without negative stiffness
+  std::vector<SparseCholesky::Pair> pairs_;
   bool factored_ = false;  // whether factor_ is the factor of this A
   bool tight_ = false;     // whether an earlier A of this step was factored
   double contrast_ = 0;    // of D and M: about 1 + (s omega)^2

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "lab/methods/Costs.hpp"
-#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/MollifiedImpulse.hpp"
 #include "lab/methods/RungeKutta.hpp"
@@ -23,23 +22,12 @@ constexpr std::array lines = {
     entry_of<Pefrl>(),         entry_of<Srkn11b>(),
     entry_of<Rk4>(),           entry_of<Rkn64>(),
     entry_of<ImplicitEuler>(), entry_of<ImplicitMidpoint>(),
-    entry_of<TrBdf2>(),        entry_of<FastMassSpring>(),
-    entry_of<Xpbd>()};
+    entry_of<TrBdf2>(),        entry_of<Xpbd>()};
 
 /** The line of @a M. It does not compile if there is none. */
 template <typename M>
 constexpr const MethodEntry& line = *std::ranges::find(
     lines, M::info.name, [](const MethodEntry& m) { return m.info.name; });
-
-/** What all_methods() returns. */
-std::vector<const MethodEntry*>& all() {
-  static std::vector<const MethodEntry*> list = [] {
-    std::vector<const MethodEntry*> made;
-    for (const MethodEntry& m : lines) made.push_back(&m);
-    return made;
-  }();
-  return list;
-}
 
 /** Null of a method without measured costs. */
 const MethodCost* cost_of(const MethodInfo& info) {
@@ -67,12 +55,9 @@ constinit const MethodEntry& tr_bdf2 = line<TrBdf2>;
 constinit const MethodEntry& xpbd = line<Xpbd>;
 }  // namespace table
 
-void add_method(const MethodEntry& own) { all().push_back(&own); }
-const std::vector<const MethodEntry*>& all_methods() { return all(); }
-
 const MethodEntry* find_method(std::string_view name) {
-  for (const MethodEntry* m : all())
-    if (m->info.name == name) return m;
+  for (const MethodEntry& m : lines)
+    if (m.info.name == name) return &m;
   return nullptr;
 }
 

@@ -4,7 +4,6 @@
  * A program that names a class of methods includes that class's header. */
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "lab/methods/Method.hpp"
 
@@ -20,11 +19,6 @@ extern const MethodEntry &forward_euler, &symplectic_euler, &verlet,
     &tr_bdf2, &xpbd;
 }  // namespace table
 
-/** Add a method of a program, which must stay, for find_method(). It may be
- * called before main() begins, but by one thread. */
-void add_method(const MethodEntry& own);
-/** Those of the table, then the added ones. */
-const std::vector<const MethodEntry*>& all_methods();
 /** The method called @a name, or nullptr. */
 const MethodEntry* find_method(std::string_view name);
 

@@ -22,22 +22,19 @@ struct Pattern : Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> {
 
 /** Replaces A by L, column by column: subtract the contributions of the columns
  * to the left, then divide by the diagonal. */
-template <typename Entry>
-struct SparseCholesky<Entry>::Factorize {
+struct SparseCholesky::Factorize {
   template <typename>  // Four on every processor
-  [[gnu::always_inline]] static inline void apply(int columns, const int* begin,
-                                                  const int* row, Entry* entry,
-                                                  const int* left_begin,
-                                                  const int* left_column,
-                                                  const int* left_at, int* into,
-                                                  bool* good) {
+  [[gnu::always_inline]] static inline void apply(
+      int columns, const int* begin, const int* row, Matrix3* entry,
+      const int* left_begin, const int* left_column, const int* left_at,
+      int* into, bool* good) {
     for (int j = 0; j < columns && *good; ++j) {
-      Entry& diagonal = entry[begin[j]];
-      const Entry before = diagonal;
+      Matrix3& diagonal = entry[begin[j]];
+      const Matrix3 before = diagonal;
       for (int p = begin[j]; p < begin[j + 1]; ++p) into[row[p]] = p;
       for (int l = left_begin[j]; l < left_begin[j + 1] - 1; ++l) {
         const int first = left_at[l], end = begin[left_column[l] + 1];
-        const Entry by = entry[first];
+        const Matrix3 by = entry[first];
         for (int p = first; p < end; ++p)
           subtract(entry[into[row[p]]], entry[p], by);
       }
@@ -49,12 +46,12 @@ struct SparseCholesky<Entry>::Factorize {
 };
 
 /** x = L^-T L^-1 x */
-template <typename Entry>
-struct SparseCholesky<Entry>::Solve {
+struct SparseCholesky::Solve {
   template <typename>  // Four on every processor
   [[gnu::always_inline]] static inline void apply(int columns, const int* begin,
                                                   const int* row,
-                                                  const Entry* entry, Row* x) {
+                                                  const Matrix3* entry,
+                                                  Row* x) {
     for (int j = 0; j < columns; ++j) {
       const Four y = x[j].c = times(entry[begin[j]], x[j].c);
       int p = begin[j] + 1;
@@ -77,9 +74,8 @@ struct SparseCholesky<Entry>::Solve {
   }
 };
 
-template <typename Entry>
-bool SparseCholesky<Entry>::analyze(unsigned rows, std::span<const Pair> pairs,
-                                    std::size_t most) {
+bool SparseCholesky::analyze(unsigned rows, std::span<const Pair> pairs,
+                             std::size_t most) {
   if (rows == rows_ && std::ranges::equal(pairs, pairs_)) return fits_;
   rows_ = rows;
   pairs_.assign(pairs.begin(), pairs.end());
@@ -137,21 +133,17 @@ bool SparseCholesky<Entry>::analyze(unsigned rows, std::span<const Pair> pairs,
   return true;
 }
 
-template <typename Entry>
-void SparseCholesky<Entry>::clear() {
-  std::fill(entry_.begin(), entry_.end(), Entry());
+void SparseCholesky::clear() {
+  std::fill(entry_.begin(), entry_.end(), Matrix3());
 }
-template <typename Entry>
-void SparseCholesky<Entry>::add_diagonal(unsigned i, const Entry& entry) {
+void SparseCholesky::add_diagonal(unsigned i, const Matrix3& entry) {
   lab::add(entry_[begin_[place_[i]]], entry);
 }
-template <typename Entry>
-void SparseCholesky<Entry>::add(std::size_t k, const Entry& entry) {
+void SparseCholesky::add(std::size_t k, const Matrix3& entry) {
   lab::add(entry_[at_[k]], entry);
 }
 
-template <typename Entry>
-bool SparseCholesky<Entry>::factorize() {
+bool SparseCholesky::factorize() {
   bool good = true;
   lanes::run<Factorize>(int(rows()), begin_.data(), row_.data(), entry_.data(),
                         left_begin_.data(), left_column_.data(),
@@ -159,16 +151,12 @@ bool SparseCholesky<Entry>::factorize() {
   return good;
 }
 
-template <typename Entry>
-void SparseCholesky<Entry>::solve(std::span<Point> b) {
+void SparseCholesky::solve(std::span<Point> b) {
   assert(b.size() == rows());
   for (unsigned k = 0; k < rows(); ++k) x_[k].c = four(b[order_[k]]);
   lanes::run<Solve>(int(rows()), begin_.data(), row_.data(), entry_.data(),
                     x_.data());
   for (unsigned k = 0; k < rows(); ++k) b[order_[k]] = point(x_[k].c);
 }
-
-template class SparseCholesky<double>;
-template class SparseCholesky<Matrix3>;
 
 }  // namespace lab

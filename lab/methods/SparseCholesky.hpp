@@ -17,9 +17,7 @@ namespace lab {
  * solves for one coordinate at a time, which takes 3 to 4 times as long.
  * Sums are in a fixed order, so every processor gets the same bits.
  * Source: T. Davis, Direct Methods for Sparse Linear Systems, SIAM 2006, 4.8:
- * left-looking.
- * @tparam Entry of A: Matrix3, or double if A acts alike on each coordinate */
-template <typename Entry>
+ * left-looking. */
 class SparseCholesky {
  public:
   /** Row and column of an entry off the diagonal. */
@@ -47,9 +45,9 @@ class SparseCholesky {
   /** A = 0. */
   void clear();
   /** A_ii += the symmetric @a entry. */
-  void add_diagonal(unsigned i, const Entry& entry);
+  void add_diagonal(unsigned i, const Matrix3& entry);
   /** A_ij and A_ji += the symmetric @a entry, for pair @a k of analyze(). */
-  void add(std::size_t k, const Entry& entry);
+  void add(std::size_t k, const Matrix3& entry);
 
   /** Replace A by L. Call clear() before the next A.
    * @return false if A is not positive definite to round-off, or not finite:
@@ -77,15 +75,12 @@ class SparseCholesky {
   // L by columns, each from its diagonal entry down. Before factorize() these
   // are the entries of A; afterwards the diagonal entries are inverted.
   std::vector<int> begin_, row_;
-  std::vector<Entry> entry_;
+  std::vector<Matrix3> entry_;
   // L by rows: the column of each entry, and its index in entry_.
   std::vector<int> left_begin_, left_column_, left_at_;
   std::vector<int> at_;    // in entry_, by pair
   std::vector<int> into_;  // in entry_, by row of the present column
   std::vector<Row> x_;
 };
-
-extern template class SparseCholesky<double>;
-extern template class SparseCholesky<Matrix3>;
 
 }  // namespace lab

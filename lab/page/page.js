@@ -254,8 +254,7 @@ const groups = {
   'Error control: it chooses its inner steps': ['rkn64'],
   'Implicit: any step, each solves a system': ['implicit-euler',
     'implicit-midpoint', 'tr-bdf2'],
-  'Position-based, of games: any step, looks right': ['xpbd',
-    'fast-mass-spring'],
+  'Position-based, of games: any step, looks right': ['xpbd'],
 };
 
 function makeControls() {

@@ -11,8 +11,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/browsers"))
 from browser import Browser, run_tests  # noqa: E402
-from firefox import Firefox  # noqa: E402
-from webkit import WebKit  # noqa: E402
+from engines import Firefox, WebKit  # noqa: E402
 
 build = pathlib.Path(sys.argv[1])
 address = "file://" + str((build / "page/index.html").resolve())
@@ -799,7 +798,7 @@ def without_webgl():
     with Browser(flags=("--disable-3d-apis",)) as b:
         b.open(address)
         b.wait("document.querySelector('#fallback img').naturalWidth > 0")
-        assert b.value("$('panel').offsetHeight") == 0
+        b.wait("$('panel').offsetHeight === 0")
         assert "WebGL" in b.value("$('fallback').innerText")
         assert not b.faults, b.faults
         b.screenshot(build / "page-fallback.png")

@@ -156,15 +156,22 @@ void check(Options& o) {
                      "the scene of a checkpoint is fixed");
   if (!o.json.empty() && !o.asks_advice())
     throw SceneError("json", "needs --advise, --assess or --auto");
-  if (!read_changes(o.model.at).empty())
-    for (const auto& [option, given] :
-         {std::pair("restart", !o.restart.empty()),
-          std::pair("checkpoint", !o.checkpoint.empty()),
-          std::pair("advise", o.asks_advice()),
-          std::pair("tolerance", o.bounds_error)})
+  const auto changes = read_changes(o.model.at);
+  if (!changes.empty())
+    for (const auto& [option, given] : {std::pair("advise", o.asks_advice()),
+                                        std::pair("tolerance", o.bounds_error)})
       if (given)
         throw SceneError("at",
                          std::string("cannot be combined with --") + option);
+  for (const Change& c : changes) {
+    const std::string word = c.request.substr(0, c.request.find(' '));
+    if (!(o.checkpoint + o.restart).empty() &&
+        !std::ranges::count(Live::archived, word))
+      throw SceneError("at", "has " + word +
+                                 ", which --checkpoint and --restart do not "
+                                 "keep: expected cut, drag, gravity, method, "
+                                 "stiffness or unpin");
+  }
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
         "window",
@@ -213,8 +220,7 @@ void list_methods() {
   }
   std::puts(
       "\nto look right at 60 frames a second, take verlet while a frame takes "
-      "it less\nwork, else fast-mass-spring on soft cloth, implicit-euler on "
-      "stiff, xpbd on\nnearly rigid cloth");
+      "it less\nwork, else implicit-euler, or xpbd on nearly rigid cloth");
 }
 
 /** A run has a tolerance: set the method and the first steps by which to keep
@@ -457,6 +463,7 @@ int parse(int argc, char** argv, Options& o) {
   o.keeps_method = app.count("--method") > 0;
   o.keeps_step = app.count("--dt") > 0 && o.model.step.fixed();
   o.model.step.tolerance = kept_tolerance;
+  if (!given("tolerance")) o.unnamed = {"tolerance"};
   if (given("tolerance") && !o.asks_advice()) {
     if (o.model.percent)
       throw SceneError("tolerance",
@@ -464,6 +471,7 @@ int parse(int argc, char** argv, Options& o) {
                            "%, which needs --advise, --assess or --auto: "
                            "expected an error of the positions [m]");
     control_error(o, given);
+    if (o.chooses_method) o.unnamed = {"method", "dt"};
     if (app.count("--tolerance") > 0 && !o.bounds_error && !o.quiet)
       std::cerr << "cloth: warning: --tolerance has no effect on "
                 << o.model.method->info.name
@@ -473,7 +481,7 @@ int parse(int argc, char** argv, Options& o) {
   check(o);
   check_has_cloth(o.model);
   if (!dump) return -1;
-  std::cout << to_scene_file(o.model);
+  std::cout << to_scene_file(o.model, o.unnamed);
   return 0;
 }
 

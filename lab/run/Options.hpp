@@ -25,6 +25,9 @@ struct Options {
   double advise_work = 0;       ///< spring evaluations; 0: AdviceRules::budget
   bool bounds_error = false;    ///< of the positions, by model.tolerance
   bool chooses_method = false;  ///< for that; else it is given
+  /** Fields that a file with this scene leaves out: whoever names them asks for
+   * another run. */
+  std::vector<std::string> unnamed;
   bool keeps_method = false, keeps_step = false;  ///< advice keeps this option
   std::string screenshot, video, csv, out, size;
   std::array<int, 2> pixels{};  ///< what size says; 0: Screen's own size

@@ -1,4 +1,3 @@
-/** @file Run.cpp */
 #include "lab/run/Run.hpp"
 
 #include <algorithm>
@@ -100,7 +99,7 @@ void Run::to_end(const std::function<void()>& after) {
 
 /** After each step. */
 void Run::look() {
-  if (o_.model.measure.over_time()) observer_.look(o_.model, scene_);
+  if (o_.model.measure.over_time()) observer_.look(scene_.model(), scene_);
   const bool at_end = scene_.done(o_.model.t_end);
   if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
@@ -116,9 +115,8 @@ void Run::look() {
 
 void Run::show_progress() {
   using CME212::short_text;
-  const double t = scene_.time(), t_end = o_.model.t_end;
-  const double rate =
-      double(scene_.steps() - first_step_) / progress_.seconds();
+  const double t = scene_.time(), t_end = o_.model.t_end,
+               rate = double(scene_.steps() - first_step_) / seconds_;
   progress_.show("t = " + short_text(t) + " of " + short_text(t_end) + " s, " +
                      short_text(std::round(rate)) + " steps/s",
                  t / t_end);
@@ -126,18 +124,20 @@ void Run::show_progress() {
 
 void Run::announce() {
   if (o_.quiet) return;
-  using CME212::percent;
-  for (const std::string& line :
-       what_acts(o_.model, scene_.cloth(), scene_.mesh().mesh))
+  const Net& mesh = scene_.mesh().mesh;
+  for (const auto& line : what_acts(o_.model, scene_.cloth(), mesh))
     std::cout << line << '\n';
   const std::string_view method = scene_.method().name;
-  const double dt = scene_.dt(), limit = scene_.safe_limit();
+  const double dt = scene_.dt();
+  const auto [limit, since] = live_ && !scene_.control()
+                                  ? live_->least_limit()
+                                  : Live::Limit{scene_.safe_limit()};
   const bool sharp = scene_.stepper().time_step().rule == StepRule::sharp;
   std::ostringstream out;
   out.precision(3);
   out << "dt = " << dt << " s";
   if (sharp) {
-    out << " at first; auto:sharp takes " << percent(sharp_share)
+    out << " at first; auto:sharp takes " << CME212::percent(sharp_share)
         << " of the stability limit in the present configuration, at most "
         << limit << " s, the limit in any (" << method << ')';
   } else if (scene_.method().adaptive) {
@@ -149,24 +149,23 @@ void Run::announce() {
     const double verlet = scene_.safe_limit(table::verlet);
     out << ": " << method << " has no stability limit";
     if (std::isfinite(verlet))
-      out << "; this is " << percent(dt / verlet)
+      out << "; this is " << CME212::percent(dt / verlet)
           << " of the stability limit of verlet (" << verlet << " s)";
   } else if (limit > 0) {
-    out << ": " << percent(dt / limit) << " of the stability limit (" << limit
-        << " s, " << method << ')';
+    out << ": " << CME212::percent(dt / limit) << " of the stability limit ("
+        << limit << " s, " << method << ')';
+    if (since > 0) out << " from t = " << since << " s on";
   } else {
     out << ": no step is stable with " << method << " and no drag";
   }
   if (scene_.control())
     out << "; afterwards adapted to the energy balance: gain of at most "
-        << percent(o_.model.step.gain) << " of the energy of motion";
+        << CME212::percent(o_.model.step.gain) << " of the energy of motion";
   if (first_step_ > 0)
     std::cout << o_.restart << ": continues at t = " << scene_.time() << " s\n";
   std::cout << out.str() << std::endl;  // at once, also into a pipe
   if (first_step_ == 0)  // they are about the cloth as it was made
-    for (const auto& w :
-         warnings(o_.model, scene_.mesh().mesh, scene_.cloth(), dt))
-      warn(w);
+    for (const auto& w : warnings(o_.model, mesh, scene_.cloth(), dt)) warn(w);
   if (const double work = scene_.flow().work; first_step_ == 0 && work != 0)
     warn("at t = 0 the obstacles give " + CME212::short_text(work) +
          " J to the cloth, which counts as their work");
@@ -280,6 +279,7 @@ void Run::archive(Archive& a) {
                                     asked);
   a(written_)(missed_).require(written_ >= 0);
   rows_.archive(a);
+  if (live_) live_->archive(a);
 }
 
 /** Write a checkpoint; before it the rows so far, so that these are there for
@@ -366,7 +366,7 @@ void Run::write_mesh() {
 void Run::add_row() {
   if (!csv_ || rows_.has_present()) return;
   const Cloth& g = scene_.cloth();
-  const Energies e = energies(g, o_.model.gravity);
+  const Energies e = energies(g, scene_.model().gravity);
   const Point c = center_of_mass(g);
   std::string row;
   for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
@@ -378,7 +378,7 @@ void Run::add_row() {
     row += ',' + CME212::to_text(a);
   row += ',' + std::to_string(scene_.evaluations());
   if (!columns_of(o_.model.measure).empty())
-    for (double a : lab::answer(o_.model, scene_, o_.model.measure))
+    for (double a : lab::answer(scene_.model(), scene_, o_.model.measure))
       row += ',' + CME212::to_text(a);
   rows_.add(row + '\n');
 }
@@ -400,7 +400,7 @@ void Run::tell_interrupt() const {
 }
 
 void Run::print_summary() const {
-  const Energies e = energies(scene_.cloth(), o_.model.gravity);
+  const Energies e = energies(scene_.cloth(), scene_.model().gravity);
   std::cout << scene_.model().name << ": " << scene_.steps()
             << " steps to t = " << scene_.time() << " s in " << seconds_
             << " s; energy " << e.total() << " J = " << e.kinetic

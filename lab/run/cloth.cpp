@@ -184,7 +184,7 @@ int run(Options o) {
   if (o.asks_advice())
     if (int status = take_advice(o); status >= 0) return status;
   if (!o.asks_advice() && !o.advised.empty())
-    return CME212::write_file(o.advised, to_scene_file(o.model)), 0;
+    return CME212::write_file(o.advised, to_scene_file(o.model, o.unnamed)), 0;
   const Model& m = o.model;
   const bool shows = !o.headless && !o.pictures();
   const bool in_window = shows && (o.window || Screen::has_display());

@@ -26,7 +26,7 @@ std::vector<Field> fields_of(Model& m) {
        "springs"},
       {"net", mesh, scene, &m.net,
        "one file instead: .net (nodes, springs, faces: data/README.md), .obj, "
-       ".off, .ply, .stl or .vtp; --net may be omitted"},
+       ".off, .ply or .stl; --net may be omitted"},
       {"sheet", cloth, scene, &m.sheets,
        "a grid of nodes instead of files; may be repeated: at X Y Z u X Y Z v "
        "X Y Z [m] nodes N M velocity X Y Z [m/s] (corner, two sides, numbers "

@@ -9,6 +9,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
+#include "lab/fast/ForcePlan.hpp"
 #include "lab/fast/GraphArrays.hpp"
 
 namespace lab {
@@ -202,42 +203,102 @@ Point force_on(const Measured& now, Node n) {
   return f;
 }
 
-/** The sum of all forces on the held nodes that @a what names [N]: what the
- * pins carry, as held nodes do not accelerate.  O(springs at them) */
+/** The sum of all forces on the held nodes that @a what names [N], each node
+ * once: what the pins carry, as held nodes do not accelerate.
+ * O(springs at them) */
 Answer pin_force(const Measured& now, const Measure& what) {
   const Cloth& g = now.cloth;
-  Point sum;
-  bool some = false;
+  std::vector<unsigned> ids;
   for (const HeldNodes& h : *now.held)
-    for (const auto& [id, place] : h.nodes) {
-      if (what.pin.distance(0, place) >= Pin::near) continue;
-      some = true;
-      if (arrays(g).node_in_use(id))
-        sum += force_on(now, arrays(g).node_with_id(id));
-    }
-  if (!some)
+    for (const auto& [id, place] : h.nodes)
+      if (what.pin.distance(0, place) < Pin::near) ids.push_back(id);
+  if (ids.empty())
     throw SceneError("measure",
                      "is " + name_of(what) + ", where no pin holds a node");
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  Point sum;
+  for (unsigned id : ids)
+    if (arrays(g).node_in_use(id))
+      sum += force_on(now, arrays(g).node_with_id(id));
   return {norm(sum)};
 }
 
-/** The size of the sum of the forces by which nodes that touch an obstacle
- * press on it, along its normal [N]: what it carries if they rest on it; the
- * impulse of an impact is no part of it.  O(nodes * obstacles) */
-Answer contact_force(const Measured& now, const Measure&) {
-  Point sum;
-  auto press = [&](Node n, double depth, const Point& out) {
-    if (!(std::abs(depth) < 1e-9 * std::max(1., norm(n.position())))) return;
-    sum += std::min(0., dot(force_on(now, n), out)) * out;
-  };
-  for (Node n : now.cloth.nodes()) {
-    for (const Wall& w : now.model.planes)
-      press(n, w.depth(n.position() - w.motion.way(now.time)), w.out());
-    for (const Solid& s : now.model.spheres) {
-      const Point p = n.position() - s.motion.way(now.time),
-                  arm = p - s.ball.center;
-      press(n, s.depth(p), arm / std::max(norm(arm), 1e-300));
+/** The surfaces that one node touches. */
+class Touched {
+ public:
+  void clear() { all_.clear(); }
+  bool empty() const { return all_.empty(); }
+  /** Add the surface if @a depth [m] is round-off of lengths of @a size. */
+  void add(double depth, double size, const Point& out, const Point& velocity) {
+    if (std::abs(depth) <= 1e-9 * size) all_.push_back({out, velocity});
+  }
+  /** The force by which the surfaces carry a node [N]: the sum of a out with
+   * a >= 0 that leaves least of @a f, the force on it, by projected
+   * Gauss-Seidel. So a surface counts once, however often it is named.
+   * @param v velocity of the node: a method adds the inward part in a step,
+   * and the surface takes it, so its drag, @a c times it, is no load */
+  Point carry(Point f, Point v, double c) {
+    constexpr int rounds = 100;
+    for (const Surface& s : all_) {
+      const double in = std::max(0., -dot(v - s.velocity, s.out));
+      v += in * s.out;
+      f -= c * in * s.out;
     }
+    Point sum;
+    double most = norm(f);
+    for (int k = 0; k < rounds && most > 1e-12 * norm(f - sum); ++k) {
+      most = 0;
+      for (Surface& s : all_) {
+        const double change = std::max(-s.force, -dot(f + sum, s.out));
+        s.force += change;
+        sum += change * s.out;
+        most = std::max(most, std::abs(change));
+      }
+    }
+    return sum;
+  }
+
+ private:
+  struct Surface {
+    Point out, velocity;
+    double force = 0;  // along out [N]
+  };
+  std::vector<Surface> all_;
+};
+
+/** The size of the sum of the forces by which nodes that touch obstacles press
+ * on them [N]: what these carry if the nodes rest on them; the impulse of an
+ * impact is no part of it. Obstacles do not act on held nodes.
+ * O(nodes * (obstacles + pins)) */
+Answer contact_force(const Measured& now, const Measure&) {
+  const ForcePlan plan = *now.force;
+  const auto is_held = [&now](unsigned id) {
+    return std::ranges::any_of(*now.held, [id](const HeldNodes& h) {
+      return std::ranges::binary_search(h.nodes, id, {}, &HeldNodes::Held::id);
+    });
+  };
+  double size = 0;
+  for (Node n : now.cloth.nodes()) size = std::max(size, norm(n.position()));
+  Point sum;
+  Touched touched;
+  for (Node n : now.cloth.nodes()) {
+    touched.clear();
+    const Point& p = n.position();
+    for (const Wall& w : now.model.planes) {
+      const Point way = w.motion.way(now.time);
+      touched.add(w.depth(p - way), size + norm(w.at + way), w.out(),
+                  w.motion.velocity_at(now.time));
+    }
+    for (const Solid& s : now.model.spheres) {
+      const Point way = s.motion.way(now.time), arm = p - way - s.ball.center;
+      touched.add(s.depth(p - way), size + s.ball.radius,
+                  arm / std::max(norm(arm), 1e-300),
+                  s.motion.velocity_at(now.time));
+    }
+    if (!touched.empty() && !is_held(n.id()))
+      sum +=
+          touched.carry(force_on(now, n), n.value().vel, plan.drag()[n.id()]);
   }
   return {norm(sum)};
 }

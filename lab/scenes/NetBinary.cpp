@@ -1,12 +1,10 @@
 /** @file NetBinary.cpp
- * Readers of nets in formats that may be binary: STL, PLY, VTK PolyData. */
+ * Readers of nets in formats that may be binary: STL, PLY. */
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -27,9 +25,9 @@ T raw(const char* bytes, bool swap = false) {
 }
 constexpr bool big = std::endian::native == std::endian::big;
 
-/** A kind of number in a binary file. */
+/** A kind of number in a .ply file. */
 struct Kind {
-  const char* names[3];  // in .ply, its other name there, in .vtp
+  const char* names[2];
   std::size_t size;
   double (*read)(const char*, bool);
 };
@@ -37,15 +35,14 @@ template <typename T>
 double as_double(const char* bytes, bool swap) {
   return double(raw<T>(bytes, swap));
 }
-constexpr Kind kinds[] = {
-    {{"char", "int8", "Int8"}, 1, as_double<std::int8_t>},
-    {{"uchar", "uint8", "UInt8"}, 1, as_double<std::uint8_t>},
-    {{"short", "int16", "Int16"}, 2, as_double<std::int16_t>},
-    {{"ushort", "uint16", "UInt16"}, 2, as_double<std::uint16_t>},
-    {{"int", "int32", "Int32"}, 4, as_double<std::int32_t>},
-    {{"uint", "uint32", "UInt32"}, 4, as_double<std::uint32_t>},
-    {{"float", "float32", "Float32"}, 4, as_double<float>},
-    {{"double", "float64", "Float64"}, 8, as_double<double>}};
+constexpr Kind kinds[] = {{{"char", "int8"}, 1, as_double<std::int8_t>},
+                          {{"uchar", "uint8"}, 1, as_double<std::uint8_t>},
+                          {{"short", "int16"}, 2, as_double<std::int16_t>},
+                          {{"ushort", "uint16"}, 2, as_double<std::uint16_t>},
+                          {{"int", "int32"}, 4, as_double<std::int32_t>},
+                          {{"uint", "uint32"}, 4, as_double<std::uint32_t>},
+                          {{"float", "float32"}, 4, as_double<float>},
+                          {{"double", "float64"}, 8, as_double<double>}};
 const Kind& kind_of(std::string_view name) {
   for (const Kind& k : kinds)
     if (std::ranges::count(k.names, name)) return k;
@@ -224,125 +221,6 @@ class Ply {
 
 Net parse_ply(std::string_view text, const std::string& file) {
   return Ply(text, file).net();
-}
-
-// ------------------------------------------------------------------------ vtp
-
-namespace {
-
-/** The bytes of @a text in base64, in one piece or several. */
-std::string bytes_of(std::string_view text) {
-  constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::array<int, 256> value;
-  value.fill(-1);
-  for (int k = 0; k < 64; ++k) value[std::uint8_t(digits[k])] = k;
-  std::string bytes;
-  unsigned bits = 0, have = 0;
-  for (char c : text) {
-    if (c == '=') have = 0;  // the end of a piece
-    const int digit = value[std::uint8_t(c)];
-    if (digit < 0) continue;
-    bits = bits << 6 | unsigned(digit), have += 6;
-    if (have >= 8) bytes += char(bits >> (have -= 8));
-  }
-  return bytes;
-}
-
-/** The value of the attribute @a name in a @a tag; or "". */
-std::string_view attribute(std::string_view tag, const std::string& name) {
-  const auto at = tag.find(' ' + name + "=\"");
-  if (at == tag.npos) return {};
-  tag.remove_prefix(at + name.size() + 3);
-  return tag.substr(0, tag.find('"'));
-}
-
-/** The numbers of all arrays, by "SECTION/NAME". */
-std::map<std::string, std::vector<double>> vtk_arrays(std::string_view text) {
-  std::map<std::string, std::vector<double>> arrays;
-  std::string section;
-  constexpr std::size_t head = 8;  // bytes before the numbers
-  bool swap = false;
-  for (auto at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
-    const auto close = std::min(text.find('>', at), text.size() - 1);
-    const auto tag = text.substr(at + 1, close - at - 1);
-    const auto name = tag.substr(0, tag.find_first_of(" /\n"));
-    if (name == "VTKFile") {
-      if (attribute(tag, "type") != "PolyData" ||
-          attribute(tag, "header_type") != "UInt64" ||
-          !attribute(tag, "compressor").empty())
-        break;
-      swap = (attribute(tag, "byte_order") == "BigEndian") != big;
-    }
-    if (name != "DataArray" && !name.empty()) section = name;
-    if (name != "DataArray" || tag.ends_with('/')) continue;
-    auto& values = arrays[section + '/' + std::string(attribute(tag, "Name"))];
-    const auto body = text.substr(close + 1, text.find('<', close) - close - 1);
-    if (attribute(tag, "format") != "binary") continue;
-    const Kind& kind = kind_of(attribute(tag, "type"));
-    const std::string bytes = bytes_of(body);
-    for (auto k = head; k + kind.size <= bytes.size(); k += kind.size)
-      values.push_back(kind.read(bytes.data() + k, swap));
-  }
-  if (arrays.empty()) fail("no arrays that can be read");
-  return arrays;
-}
-
-}  // namespace
-
-Net parse_vtp(std::string_view text, const std::string& file) try {
-  auto arrays = vtk_arrays(text);
-  const auto points = [](const std::vector<double>& a) {
-    std::vector<Point> all;
-    if (a.size() % 3 != 0) fail(CME212::count_of(a.size(), "coordinate"));
-    for (std::size_t k = 0; k + 2 < a.size(); k += 3)
-      all.push_back(finite({a[k], a[k + 1], a[k + 2]}));
-    return all;
-  };
-  Builder b;
-  Net& net = b.net;
-  for (const auto& [name, values] : arrays)
-    if (name.starts_with("Points/")) net.points = points(values);
-  const auto n = net.points.size();
-  if (auto v = points(arrays["PointData/velocity"]); v.size() == n)
-    net.velocities = std::move(v);
-  if (const auto& m = arrays["PointData/mass"];
-      m.size() == n && std::ranges::all_of(m, [](double a) { return a > 0; }))
-    net.masses = m;
-  const auto& pinned = arrays["PointData/pinned"];
-  for (unsigned i = 0; i < n && pinned.size() == n; ++i)
-    if (pinned[i] != 0) net.held.push_back(i);
-  const auto cells = [&](const std::string& section, auto use) {
-    const auto &nodes = arrays[section + "/connectivity"],
-               &ends = arrays[section + "/offsets"];
-    std::vector<long long> cell;
-    for (std::size_t k = 0, end = 0; k < nodes.size() && end < ends.size();) {
-      cell.push_back(index_of(nodes[k++]));
-      if (double(k) < ends[end]) continue;
-      use(cell), cell.clear(), ++end;
-    }
-    if (!cell.empty() || (!ends.empty() && ends.back() != double(nodes.size())))
-      fail(section + ": offsets do not end where connectivity does");
-  };
-  cells("Polys", [&](const auto& nodes) { b.face(nodes); });
-  // The strain of a line, l/L - 1, has its rest length; lines come first.
-  const auto& strains = arrays["CellData/strain"];
-  cells("Lines", [&](const auto& nodes) {
-    for (std::size_t k = 1; k < nodes.size(); ++k) {
-      const auto line = net.springs.size();
-      const unsigned i = b.index(nodes[k - 1]), j = b.index(nodes[k]);
-      const double l = norm(net.points[i] - net.points[j]);
-      const bool known = line < strains.size() && strains[line] > -1;
-      b.spring(i, j, -1, known ? l / (1 + strains[line]) : l);
-    }
-  });
-  net.bare_faces = !net.springs.empty();
-  return std::move(net);
-} catch (const std::runtime_error& e) {
-  throw InputError(file, 0,
-                   e.what() + (", expected VTK PolyData as ./cloth --vtp "
-                               "writes it, and " +
-                               corners));
 }
 
 }  // namespace lab::net_parsing

@@ -204,8 +204,7 @@ Net parse_net(std::string_view text, const std::string& file) {
                                 {".obj", parse_obj, Format::seams},
                                 {".off", parse_off, Format::seams},
                                 {".ply", parse_ply, Format::seams},
-                                {".stl", parse_stl, Format::triangles},
-                                {".vtp", parse_vtp, Format::as_it_is}};
+                                {".stl", parse_stl, Format::triangles}};
   const std::string ending = CME212::ending_of(file);
   std::string known;
   for (const Format& f : formats) {
@@ -224,7 +223,11 @@ Net parse_net(std::string_view text, const std::string& file) {
           CME212::count_of(net.points.size(), "node"));
     return net;
   }
-  throw InputError(file, 0, "expected a name that ends in one of " + known);
+  throw InputError(file, 0,
+                   "expected a name that ends in one of " + known +
+                       (ending == ".vtp" ? "; ParaView writes .ply: File, "
+                                           "Save Data"
+                                         : ""));
 }
 
 void write_net(std::ostream& out, const Net& net) {

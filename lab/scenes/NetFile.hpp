@@ -16,7 +16,6 @@ namespace lab {
  *  - .ply: ASCII or binary; x y z, vx vy vz of vertex, lists of face, vertex1
  *    and vertex2 of edge (springs)
  *  - .stl: ASCII or binary; its corners at the same place are one node
- *  - .vtp: as ./cloth --vtp writes
  * By hand: Assimp 5.2.5 gives coordinates in single precision, numbers the
  * nodes of .obj by their faces, names no line, takes a .ply whose face has a
  * node that is not there, and reads no velocities; OpenMesh has no springs.

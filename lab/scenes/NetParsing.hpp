@@ -92,6 +92,5 @@ inline const std::string corners = "faces of three or four different nodes";
 // Formats that may be binary; as parse_net().
 Net parse_stl(std::string_view text, const std::string& file);
 Net parse_ply(std::string_view text, const std::string& file);
-Net parse_vtp(std::string_view text, const std::string& file);
 
 }  // namespace lab::net_parsing

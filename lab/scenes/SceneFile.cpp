@@ -116,7 +116,8 @@ const StoredScene& stored_scene(std::string_view name) {
 
 // ------------------------------------------------------------------- Printing
 
-std::string to_scene_file(const Model& m) {
+std::string to_scene_file(const Model& m,
+                          const std::vector<std::string>& without) {
   Model copy = m;
   const auto all = fields_of(copy);
   std::string text;
@@ -125,7 +126,9 @@ std::string to_scene_file(const Model& m) {
     const auto replaces = [&](const Field& other) {
       return other.instead_of == f.name && !other.values().empty();
     };
-    if (values.empty() || std::ranges::any_of(all, replaces)) continue;
+    if (values.empty() || std::ranges::any_of(all, replaces) ||
+        std::ranges::count(without, f.name) > 0)
+      continue;
     text += std::string("# ") + f.help + '\n' + f.name + " = ";
     std::string list;
     for (const std::string& value : values) {

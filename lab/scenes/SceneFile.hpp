@@ -60,9 +60,11 @@ Model read_model(const std::string& file, const std::string& name,
                  const std::string& text);
 
 /** @a m as a scene file: the help of each field as a comment, and its value.
- * Fields that are not set are left out; file names are absolute. Reading the
- * text gives the same scene, whatever characters its names have. */
-std::string to_scene_file(const Model& m);
+ * Fields that are not set, and those of the names @a without, are left out;
+ * file names are absolute. Reading the text gives the same scene, whatever
+ * characters its names have. */
+std::string to_scene_file(const Model& m,
+                          const std::vector<std::string>& without = {});
 
 /** The names of fields_of() a Model, in their order. */
 std::vector<std::string> scene_keys();

@@ -318,7 +318,8 @@ constexpr struct {
                    {"crank-nicolson", "implicit-midpoint", false},
                    {"bdf2", "tr-bdf2", false},
                    {"generalized-alpha", "tr-bdf2", false},
-                   {"projective-dynamics", "fast-mass-spring", false},
+                   {"projective-dynamics", "implicit-euler", false},
+                   {"fast-mass-spring", "implicit-euler", false},
                    {"pbd", "xpbd", false}};
 }  // namespace
 
@@ -331,7 +332,7 @@ const MethodEntry* method_named(std::string_view name, std::string& hint) {
     names.push_back(other.same ? other.name : other.method);
   }
   const MethodEntry* method = find_method(name);
-  for (const MethodEntry* m : all_methods()) names.push_back(m->info.name);
+  for (const MethodEntry& m : methods) names.push_back(m.info.name);
   if (!method && hint.empty()) hint = did_you_mean(name, names);
   return method;
 }

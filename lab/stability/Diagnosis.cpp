@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "CME212/Util.hpp"
-#include "lab/methods/FastMassSpring.hpp"
 #include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Xpbd.hpp"
@@ -113,7 +112,7 @@ Cause cause_without_limit(const FailedRun& run) {
   };
   if (run.rigid) return Cause::error;
   if (is(ImplicitEuler::info)) return run.flat ? Cause::flat : Cause::linear;
-  if (is(Xpbd::info) || is(FastMassSpring::info)) return Cause::rounds;
+  if (is(Xpbd::info)) return Cause::rounds;
   if (is(ImplicitMidpoint::info) && run.dt > run.verlet) return Cause::waves;
   return Cause::error;
 }

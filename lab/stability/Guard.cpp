@@ -13,7 +13,8 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
                                  const EnergyFlow& flow)
     : gravity_(gravity), dt_(dt) {
   const Energies e = energies(g, gravity, flow);
-  start_ = balance(e, flow) - flow.drag;
+  start_ = balance(e, flow);
+  drag_ = flow.drag;
   available_ = e.internal();
   const double fall = gravity * dt;  // [m/s]
   constexpr double strain = 1e-6;
@@ -26,8 +27,10 @@ DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
 bool DivergenceGuard::accept(const Cloth& g, const Energies& e,
                              const EnergyFlow& flow) {
   if (!std::isfinite(e.total())) return false;
-  // The internal energy without the method's errors and without drag
-  const double exact = e.internal() - (balance(e, flow) - flow.drag - start_);
+  // The internal energy without the method's errors and without what drag has
+  // taken; what drag gives, in a wind, is in it.
+  const double exact = e.internal() - (balance(e, flow) - start_) +
+                       std::max(0., flow.drag - drag_);
   const double available = std::max(available_, exact);
   const double floor = floor_ + e.fall_power * dt_;
   if (!(e.internal() <= margin * (available + floor))) return false;

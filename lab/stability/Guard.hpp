@@ -39,7 +39,8 @@ class NodeStates {
  * internal: elastic energy, and kinetic energy relative to the held nodes, or
  *   to the center of mass of a loose cloth: Energies::internal()
  * available: the largest value so far of initial energy + released
- *   gravitational energy + work - kinetic energy of the cloth as a whole
+ *   gravitational energy + work, also of wind - kinetic energy of the cloth as
+ *   a whole
  * floor: the energy of a free fall during one step, since speed may grow one
  *   step before height falls, and of springs strained by round-off */
 class DivergenceGuard {
@@ -88,7 +89,8 @@ class DivergenceGuard {
 
  private:
   double gravity_, dt_;  // [m/s^2, s]
-  double start_ = 0;     // the balance at the start, without drag [J]
+  double start_ = 0;     // the balance at the start [J]
+  double drag_ = 0;      // flow.drag then [J]
   double floor_ = 0, round_off_ = 0, available_ = 0;  // the most so far [J]
   NodeStates kept_;
 };

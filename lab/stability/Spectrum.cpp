@@ -147,7 +147,7 @@ double SharpOmega::operator()(const Cloth& g, const ForcePlan& force,
     auto at = [&](unsigned i) {
       return scale_[i] * Point(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
     };
-    for (const Spring& s : springs_) {
+    for (const spectrum_detail::Spring& s : springs_) {
       const Point pull = s.B * (at(s.i) - at(s.j));
       for (unsigned k = 0; k < 3; ++k) {
         w[3 * s.i + k] += scale_[s.i] * pull[k];
@@ -162,13 +162,13 @@ double SharpOmega::operator()(const Cloth& g, const ForcePlan& force,
 double omega_gershgorin(const Cloth& g, const ForcePlan& force,
                         const ConstraintPlan& constraint) {
   using namespace spectrum_detail;
-  std::vector<Spring> springs;
+  std::vector<spectrum_detail::Spring> springs;
   std::vector<double> scale;
   find_springs(g, force, springs);
   find_scales(g, constraint, scale);
   std::vector<Eigen::Matrix3d> sum(arrays(g).node_slots(),
                                    Eigen::Matrix3d::Zero());
-  for (const Spring& s : springs) {
+  for (const spectrum_detail::Spring& s : springs) {
     const double along = std::max(0.0, s.B.along);
     const double across = std::max(0.0, s.B.across);
     const Eigen::Vector3d n(s.B.direction.x, s.B.direction.y, s.B.direction.z);

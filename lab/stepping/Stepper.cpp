@@ -115,7 +115,8 @@ void Stepper::hand_changed() {
 void Stepper::start_control() {
   control_.reset();
   if (failure_) return;
-  if (!step_.fixed() || follows_drag_) start_drag();
+  const bool has_wind = system_.wind != Point();  // it gives energy: Guard
+  if (!step_.fixed() || follows_drag_ || has_wind) start_drag();
   if (step_.fixed()) return;
   const double longest = limits_.mild(entry_, drag_, clock_.dt, step_.gain);
   if (longest < clock_.dt) clock_.set_dt(longest);

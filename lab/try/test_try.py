@@ -12,15 +12,11 @@ import os
 import pathlib
 import random
 import re
-import shutil
 import sys
 import tempfile
 
-import film as films
-import judge
 import measure
 import teacher
-import workshop
 from workshop import ROOT, BadInput  # it knows the way to course/kit
 
 from tasks import tomllib
@@ -139,29 +135,6 @@ double my_step(G& g, double t, double dt, F force) {
     if status or v.name != "symplectic Euler" or v.faults or v.order != 1:
         return [said]
     return [] if abs(v.limit - 2) < .02 else [f"limit {v.limit}"]
-
-
-def film(_):
-    """A step that leaves its folder where no measurement looks: in a film."""
-    folder = pathlib.Path(tempfile.mkdtemp(dir=FOLDER, prefix="film-"))
-    escaped, path = FOLDER / "escaped", folder / "mine.hpp"
-    path.write_text("#include <fstream>\n" + FORM % (
-        "", f'std::ofstream("{escaped}") << t;\n'
-        "drift(dt); constraint(g, end); kick(dt, t);"), encoding="utf-8")
-    folder.chmod(0o755)
-    shop = workshop.Workshop(path, "my_step", 5)
-    try:
-        verdict = judge.Verdict("my_step")
-        scene, file = shop.folder / "scene.toml", shop.folder / "states"
-        scene.write_text(films.scene_of(verdict), "utf-8")
-        films.states(shop, films.programs(shop, verdict)[1], scene, file)
-        size = file.stat().st_size
-    finally:
-        shop.close()
-        shutil.rmtree(folder)
-    expected = 2000 * 2 * (1 + 625 * 6) * 8     # two states a step
-    found = [f"{size} bytes of states"] * (size != expected)
-    return found + [f"{escaped} was written"] * escaped.exists()
 
 
 # ---- A method that nobody has
@@ -293,8 +266,7 @@ def main():
     cases = [(case["name"], mistake, case) for case in
              [*of_the_course(), *({"name": name, **one} for name, one
                                   in tomllib.loads(toml).items())][sample]]
-    cases += [("without constraint", without_constraint, None),
-              ("a film in the jail", film, None)]
+    cases += [("without constraint", without_constraint, None)]
     cases += [(f"own method {seed}", own_method, seed) for seed in (1, 2)]
     cases += [(row[0], declared, row) for row in DECLARED[sample]]
     check = Check()

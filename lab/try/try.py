@@ -28,12 +28,6 @@ def main() -> int:
         progress("drawing ...")
         out = report.write(verdict, pathlib.Path(os.environ.get("TO") or "try"),
                            path)
-        if os.environ.get("RECORD"):
-            progress("building the program of the film ...")
-            import film
-            progress("")
-            return film.record(verdict, pathlib.Path(path),
-                               os.environ["RECORD"])
     finally:
         progress("")
     print(teacher.words(verdict))

@@ -11,7 +11,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "course/kit"))
@@ -163,27 +162,23 @@ class Workshop:
         """Are Graph.hpp and mass_spring.hpp those of the course?"""
         return not {"Graph.hpp", "mass_spring.hpp"} & self.taken.files.keys()
 
-    def compile(self, kind: str = "fast",
-                source: pathlib.Path = ROOT / "lab/try/probe.cpp",
-                words: Sequence = ()) -> pathlib.Path:
-        """The probe, or what `source` and `words` for the compiler make;
-        BadInput names the first error of the file."""
+    def compile(self, kind: str = "fast") -> pathlib.Path:
+        """The probe; BadInput names the first error of the file."""
         if kind in self.programs:
             return self.programs[kind]
         program = self.sources.built / kind
-        probe = kind in FLAGS
-        command = [once.CXX, *([*COMMON, *FLAGS[kind]] if probe else []),
+        command = [once.CXX, *COMMON, *FLAGS[kind],
                    "-fmax-errors=20", "-fdiagnostics-plain-output",
                    "-iquote", self.sources.source,
                    f"-ffile-prefix-map={self.sources.source}="
                    + str(self.path.parent),
                    *(["-include", self.prelude / f"{kind}.hpp"]
-                     if probe and self.of_the_course() else []),
+                     if self.of_the_course() else []),
                    f'-DTRY_FILE="{self.sources.source}/{self.path.name}"',
                    f'-DTRY_UNDEFINED="{self.sources.undefined}"',
                    f"-DTRY_STEP={self.step}",
                    f"-DTRY_ARGUMENTS={self.arguments}",
-                   source, *words, "-o", program]
+                   ROOT / "lab/try/probe.cpp", "-o", program]
         unit = self.sources.compiled(command, COMPILING)
         if unit.refused:
             raise BadInput(f"{self.path}:1: {unit.refused}")
@@ -207,13 +202,32 @@ class Workshop:
 
     def run(self, part: str, kind: str = "fast",
             *more: object) -> tuple[Lines, sandbox.Outcome]:
-        """(its lines, name and numbers; outcome) of a part of the probe."""
-        program = self.programs[kind]
+        """(its lines, name and numbers; outcome) of a part of the probe, in the
+        jail, which reads the folder and the system's libraries."""
         seconds = SECONDS.get(part, 8) * (1 if kind == "fast" else 8)
         limits = sandbox.Limits(cpu=seconds, wall=4 * seconds)
         spoken = sandbox.Output(limits.output, limits.output)
-        outcome = self.jailed(lambda pipe: [program, part, pipe, *more],
-                              limits, spoken.add)
+        written = sandbox.Output(limits.output)
+        from_read, from_write = os.pipe()
+        command = self.programs[kind], part, from_write, *more
+        process = subprocess.Popen(
+            [*self.jail, "--cpu", str(limits.cpu),
+             *build.flags("--read", [  # type: ignore[attr-defined]
+                 self.folder, "/usr/lib", "/lib", "/lib64", "/etc/ld.so.cache",
+                 "/proc/self"]),
+             "--", *map(str, command)], cwd="/",
+            env=sandbox.clean_environment("/nowhere"), pass_fds=[from_write],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE, start_new_session=True)
+        os.close(from_write)
+        assert process.stderr
+        try:
+            with process.stderr as pipe:
+                stopped, _ = sandbox.watch(process, limits, {
+                    pipe.fileno(): written.add, from_read: spoken.add})
+        finally:
+            os.close(from_read)
+        outcome = sandbox.Outcome(stopped, process.returncode, written.text())
         found: Lines = []
         for line in spoken.first.decode("ascii", "replace").splitlines():
             name, *numbers = line.split(" ")
@@ -223,34 +237,6 @@ class Workshop:
                 pass
         outcome.begun = bool(found)
         return found, outcome
-
-    def jailed(self, command: Callable[[int], Sequence[object]],
-               limits: sandbox.Limits, take: Callable[[bytes], bool],
-               reads: Sequence[object] = ()) -> sandbox.Outcome:
-        """Run command(its end of a pipe) in the jail, with reads beside the
-        folder and the system's libraries. take gets what comes by the pipe,
-        whose end is in TRY_PIPE, too, and says if more may come."""
-        from_read, from_write = os.pipe()
-        written = sandbox.Output(limits.output)
-        process = subprocess.Popen(
-            [*self.jail, "--cpu", str(limits.cpu),
-             *build.flags("--read", [  # type: ignore[attr-defined]
-                 self.folder, "/usr/lib", "/lib", "/lib64", "/etc/ld.so.cache",
-                 "/proc/self", *reads]),
-             "--", *map(str, command(from_write))], cwd="/",
-            env={**sandbox.clean_environment("/nowhere"),
-                 "TRY_PIPE": str(from_write)}, pass_fds=[from_write],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE, start_new_session=True)
-        os.close(from_write)
-        assert process.stderr
-        try:
-            with process.stderr as pipe:
-                stopped, _ = sandbox.watch(process, limits, {
-                    pipe.fileno(): written.add, from_read: take})
-        finally:
-            os.close(from_read)
-        return sandbox.Outcome(stopped, process.returncode, written.text())
 
     def close(self) -> None:
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -1,18 +1,18 @@
-"""A headless Chromium, driven by its own protocol over a web socket: needs
-chromium and python3-websocket (tools/deps.sh browser)."""
+"""A headless Chromium, driven by Selenium: needs chromium-driver and
+python3-selenium (tools/deps.sh browser)."""
 import base64
-import json
 import pathlib
-import shutil
-import subprocess
 import sys
-import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-import websocket
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.remote.remote_connection import RemoteConnection
+
+RemoteConnection.set_timeout(900)
 
 
 class Skipped(Exception):
@@ -21,30 +21,19 @@ class Skipped(Exception):
 
 class Browser:
     """One page. Use it in a with statement; lengths in CSS pixels."""
+    driver: Any
 
     def __init__(self, width: int = 1280, height: int = 800,
                  flags: Iterable[str] = ()) -> None:
-        self.folder = tempfile.mkdtemp(prefix="page.")
-        self.process = subprocess.Popen(
-            ["chromium", "--headless=new", "--no-sandbox", "--no-first-run",
-             "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-             "--disable-background-networking", "--hide-scrollbars",
-             "--remote-debugging-port=0", "--remote-allow-origins=*",
-             f"--user-data-dir={self.folder}", *flags, "about:blank"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        port = pathlib.Path(self.folder, "DevToolsActivePort")
-        self._until(lambda: port.exists() and "\n" in port.read_text(), 60,
-                    "the browser does not start")
-        number, path = port.read_text().split("\n")[:2]
-        self.socket = websocket.create_connection(
-            f"ws://127.0.0.1:{number}{path}", timeout=300)
-        self.count, self.session = 0, None
-        self.faults: list[str] = []
-        target = self.send("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.send("Target.attachToTarget", targetId=target,
-                                 flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log"):
-            self.send(domain + ".enable")
+        options = webdriver.ChromeOptions()
+        for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars",
+                     "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+                     *flags):
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.driver = webdriver.Chrome(
+            service=Service("/usr/bin/chromedriver"), options=options)
+        self.found: list[str] = []
         self.size = width, height
         self.resize(width, height)
 
@@ -55,53 +44,27 @@ class Browser:
         self.close()
 
     def close(self) -> None:
-        self.socket.close()
-        self.process.terminate()
-        self.process.wait(60)
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self.driver.quit()
 
     def as_new(self) -> None:
         """For the next test, as it was at first."""
-        self.faults = []
+        self.faults.clear()
         self.resize(*self.size)
         self.prefer()
 
-    @staticmethod
-    def _until(holds, seconds, what):
-        end = time.monotonic() + seconds
-        while not holds():
-            if time.monotonic() > end:
-                raise TimeoutError(what)
-            time.sleep(0.05)
+    @property
+    def faults(self) -> list[str]:
+        """What the page complained of."""
+        self.found += [entry["message"] for entry in
+                       self.driver.get_log("browser")
+                       if entry["level"] == "SEVERE" or
+                       (entry["level"], entry["source"]) ==
+                       ("WARNING", "console-api")]
+        return self.found
 
     def send(self, method: str, /, **values: Any) -> Any:
-        """The answer to a command. What the page complains of meanwhile goes
-        to self.faults."""
-        self.count += 1
-        message = {"id": self.count, "method": method, "params": values}
-        if self.session:
-            message["sessionId"] = self.session
-        self.socket.send(json.dumps(message))
-        while True:
-            answer = json.loads(self.socket.recv())
-            self._listen(answer)
-            if answer.get("id") == self.count:
-                if "error" in answer:
-                    raise RuntimeError(f"{method}: {answer['error']}")
-                return answer["result"]
-
-    def _listen(self, event):
-        values = event.get("params", {})
-        if event.get("method") == "Runtime.exceptionThrown":
-            details = values["exceptionDetails"]
-            self.faults.append(details.get("exception", {}).get(
-                "description", details["text"]))
-        elif event.get("method") == "Runtime.consoleAPICalled":
-            if values["type"] in ("error", "warning", "assert"):
-                self.faults.append(str(values["args"]))
-        elif event.get("method") == "Log.entryAdded":
-            if values["entry"]["level"] == "error":
-                self.faults.append(values["entry"]["text"])
+        """The answer to a command of Chromium's own protocol."""
+        return self.driver.execute_cdp_cmd(method, values)
 
     def resize(self, width: int, height: int, touch: bool = False) -> None:
         self.send("Emulation.setDeviceMetricsOverride", width=width,
@@ -119,9 +82,8 @@ class Browser:
 
     def open(self, address: str) -> None:
         """Another page, also if only what is behind # is another."""
-        self.send("Page.navigate", url="about:blank")
-        self.send("Page.navigate", url=address)
-        self.wait("document.readyState === 'complete'")
+        self.driver.get("about:blank")
+        self.driver.get(address)
 
     def value(self, expression: str) -> Any:
         """What an expression of JavaScript is; it is waited for."""
@@ -142,12 +104,14 @@ class Browser:
             f"(new Uint8Array(({array}).buffer))"))
 
     def wait(self, expression: str, seconds: float = 60) -> None:
-        self._until(lambda: self.value(expression), seconds,
-                    f"never: {expression}")
+        end = time.monotonic() + seconds
+        while not self.value(expression):
+            if time.monotonic() > end:
+                raise TimeoutError(f"never: {expression}")
+            time.sleep(0.05)
 
     def screenshot(self, file: str | pathlib.Path) -> None:
-        data = self.send("Page.captureScreenshot", format="png")["data"]
-        pathlib.Path(file).write_bytes(base64.b64decode(data))
+        self.driver.save_screenshot(str(file))
 
     def key(self, key: str, code: str = "", text: str = "") -> None:
         for kind in ("keyDown", "keyUp"):

@@ -74,6 +74,18 @@ auto make_combined_force(A a, B b, More... more) {
     return make_combined_force(Sum<A, B>(a, b), more...);
 }
 
+class CombinedForces {
+  std::vector<Force*> all_;
+
+ public:
+  explicit CombinedForces(std::vector<Force*>& all) : all_(all) {}
+  Point operator()(Node n, double t) {
+    Point f(0, 0, 0);
+    for (std::size_t i = 0; i < all_.size(); ++i) f += (*all_[i])(n, t);
+    return f;
+  }
+};
+
 struct Constraint {
   virtual ~Constraint() {}
   virtual void operator()(Fabric*, double) {}

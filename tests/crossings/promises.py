@@ -1,0 +1,316 @@
+"""What a run promises: one function each. It gets a Case, and returns nothing
+if the promise is kept, or says what was expected and what came."""
+import pathlib
+import re
+import subprocess
+import time
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.linalg import norm
+from scipy.optimize import nnls
+
+import oracle
+from oracle import LIMIT, Array, End, Net, Scene
+from scenes import options, scaled
+
+# The kind of a broken promise, and what was seen.
+Broken = tuple[str, list[str]] | None
+
+
+class Run:
+    """A run of ./cloth: its status, what it said, the state at its end."""
+
+    def __init__(self, cloth: str, folder: pathlib.Path, *arguments: str):
+        files = [folder / "end.net", folder / "rows.csv"]
+        for file in files:
+            file.unlink(missing_ok=True)
+        done = subprocess.run(
+            [cloth, *arguments, "--headless", "--out", "end.net"],
+            capture_output=True, text=True, timeout=60, cwd=folder)
+        self.status, self.text = done.returncode, done.stdout
+        self.said = re.findall("^cloth:.*", done.stderr, re.M)
+        self.bits, self.rows = (
+            f.read_text() if f.exists() else "" for f in files)
+
+    @cached_property
+    def csv(self) -> dict[str, np.ndarray]:
+        """The columns, by name."""
+        names, *rows = self.rows.split()
+        table = np.array([r.split(",") for r in rows], float)
+        return dict(zip(names.split(","), table.T))
+
+    @cached_property
+    def net(self) -> tuple:
+        """x, v, masses, springs (i, j, K, L) of the last state."""
+        nodes = [re.sub("mass|velocity|held", "", line + " 0 0 0").split()
+                 for line in re.findall("^node (.*)", self.bits, re.M)]
+        springs = re.findall("^spring (.*)", self.bits, re.M)
+        a = np.array([n[:7] for n in nodes], float).reshape(-1, 7)
+        return (a[:, :3], a[:, 4:], a[:, 3],
+                np.array([s.split() for s in springs], float).reshape(-1, 4))
+
+    def answer(self) -> list[float] | None:
+        """The numbers of the measure, as printed; or None."""
+        found = re.findall(r"^[a-z].*?: (.*?)(?: [a-zA-Z]+)? (?:at|until) t = ",
+                           self.text, re.M)
+        return [float(a) for a in found[-1].split()] if found else None
+
+
+class Case:
+    """A scene, its run and the truth, each computed when it is asked for."""
+
+    def __init__(self, cloth: str, folder: pathlib.Path, scene: Scene):
+        self.cloth, self.folder, self.scene = cloth, folder, scene
+        self.fixed = isinstance(scene.get("dt"), float)
+        self.contact = any(f in scene for f in oracle.CONTACT)
+
+    def run(self, *more: str, **other: Any) -> Run:
+        """A run with other options, and with other values of fields."""
+        return Run(self.cloth, self.folder, *options(
+            self.scene | other, self.folder), *more)
+
+    @cached_property
+    def base(self) -> Run:
+        return self.run("--csv", "rows.csv", "--every", "1")
+
+    @cached_property
+    def truth(self) -> End:
+        end = self.scene["t-end"]
+        steps = (end / self.scene["dt"] if self.fixed else
+                 len(self.base.csv["t"]) - 1)
+        return oracle.truth(self.scene, end, end / float(
+            np.clip(steps, 50, 1000)))
+
+    @property
+    def exact(self) -> float:
+        """How certain the truth is, as a share of the size."""
+        return self.truth.bar / self.truth.size
+
+    def nets(self) -> tuple[Net, Net]:
+        """At the start, and after the changes."""
+        first, last = Net(self.scene), Net(self.scene)
+        for _, request in self.scene.get("at", []):
+            last.change(request)
+        return first, last
+
+    def error(self, run: Run | None = None) -> tuple[float, float]:
+        """How far the end of a run is from the truth: of the farthest node, as
+        a share of the size; of the energy, as one of the internal energy. Not
+        numbers, if other nodes are left."""
+        truth, (x, v, _, _) = self.truth, (run or self.base).net
+        if len(x) != truth.alive.sum():
+            return np.nan, np.nan
+        place = np.abs(x - truth.x[truth.alive]).max() / truth.size
+        if not truth.alive.all() or not np.isfinite(place):
+            return place, 0.
+        a, b = (sum(truth.net.energies(*state).values()) for state in
+                ((x, v), (truth.x, truth.v)))
+        return place, abs(a - b) / max(truth.internal, 1e-12)
+
+    @property
+    def sound(self) -> bool:
+        return max(self.error()) < .01 and self.exact < .003
+
+
+def healthy(c: Case) -> Broken:
+    """A run that the oracle calls sound ends with 0, without a warning."""
+    if c.base.status not in (0, 3):
+        return f"status {c.base.status}", c.base.said
+    method = c.scene.get("method", "")
+    if c.base.status == 3:  # it ended early: would a finer run do the same?
+        if not c.fixed or method == "forward-euler":
+            return None
+        share = c.scene["dt"] * Net(c.scene).omega() / LIMIT.get(method, 2)
+        if share < .3 and "at" not in c.scene and c.exact < .01:
+            return "stopped", [f"{share:.2f} of the limit", *c.base.said]
+    elif c.base.said and c.sound:
+        made = c.run(**{"t-end": 0.}).said  # of the scene as it was made
+        said = [a for a in c.base.said if a not in made and
+                "tunnelled" not in a and "moves up to" not in a]
+        if said:
+            return "warned", ["off by %.1e, energy by %.1e" % c.error(), *said]
+    return None
+
+
+def sick(c: Case) -> Broken:
+    """A run whose positions or energy are far off is not silent."""
+    if not c.base.said and c.exact < .01 and max(c.error()) > .1:
+        return "silent", ["positions off by %.2f of the size, energy by %.2f, "
+                          "and nothing said" % c.error()]
+    return None
+
+
+def end(c: Case) -> Broken:
+    """The end converges to the truth with the step."""
+    if not c.fixed:
+        return None
+    place, floor = c.error()[0], 3 * c.exact + (.005 if c.contact else 1e-6)
+    if not floor <= place <= .1:
+        return None
+    fine = c.run(dt=c.scene["dt"] / 4)
+    if fine.status == 0 and (better := c.error(fine)[0]) > .8 * place + floor:
+        return "off", [f"off by {place:.2e} of the size; with a quarter of "
+                       f"the step by {better:.2e}"]
+    return None
+
+
+def contact_force(net: Net, x: Array, v: Array, t: float) -> Any:
+    """What the free nodes that touch press with: the least force along the
+    outward normals that keeps each from moving in. An inward velocity, which
+    the next contact takes, feels no drag."""
+    total, size, all_ = np.zeros(3), norm(x, axis=1).max(), net.force(x, v)
+    touch = [(np.abs(depth) <= 1e-9 * (size + norm(p["at"])), out, w)
+             for p, depth, out, w in oracle.obstacles(net.scene, x, t)]
+    for k in set(range(net.n)) - set(net.held()):
+        outs, u = [(out[k], w) for on, out, w in touch if on[k]], v[k]
+        for out, w in outs:
+            u = u - min(0, (u - w) @ out) * out
+        if outs:
+            N = np.transpose([out for out, _ in outs])
+            total += N @ nnls(N, net.c[k] * (u - v[k]) - all_[k])[0]
+    return norm(total)
+
+
+def quantity(name: str, net: Net, x: Array, v: Array, t: float) -> Any:
+    """The numbers of a measure at the end; None: nothing to compare with."""
+    word, *rest = name.split()
+    only = [k for k in range(3) if "xyz"[k] in rest] or [0, 1, 2]
+    e, l = net.energies(x, v), norm(x[net.j] - x[net.i], axis=1)
+    some = {"com": lambda: (net.m @ x / net.m.sum())[only],
+            "energy": lambda: sum(e.values()),
+            "kinetic-energy": lambda: e["kinetic"],
+            "elastic-energy": lambda: e["elastic"],
+            "max-stretch": lambda: np.max(
+                (l / net.L - 1)[net.L > 0], initial=0),
+            "drape-height": lambda: x[:, 2].min(),
+            "pin-force": lambda: norm(net.force(x, v)[net.held()].sum(0)),
+            "contact-force": lambda: contact_force(net, x, v, t)}
+    return np.atleast_1d(some[word]()) if word in some else None
+
+
+def measure(c: Case) -> Broken:
+    """Each quantity is that of the state at the end; K, L and masses are those
+    of the scene."""
+    got, name, net = c.base.answer(), c.scene["measure"], c.nets()[1]
+    x, v, m, springs = c.base.net
+    late = any("after the end" in a for a in c.base.said)  # a change
+    if got is None or late or (len(x), len(springs)) != net.C.shape:
+        return None
+    theirs, order = np.sort(springs[:, :2], axis=1), np.lexsort((net.j, net.i))
+    K, L = springs[np.lexsort((theirs[:, 1], theirs[:, 0])), 2:].T
+    for what, a, b in (("mass", m, net.m), ("K", K, net.K[order]),
+                       ("L", L, net.L[order])):
+        if not np.allclose(a, b, rtol=1e-9):
+            return "material", [f"{what}: up to {np.abs(a - b).max():.3g} off"]
+    wanted = quantity(name, net, x, v, c.scene["t-end"])
+    scale = 1e-3 * np.abs(net.K * net.L).max(initial=0) * ("force" in name)
+    if wanted is not None and (len(got) != len(wanted) or np.abs(
+            got - wanted).max() > 2e-5 * max(scale, 1e-6, *np.abs(wanted))):
+        return name.split()[0], [f"{name}: got {got}, expected {wanted}"]
+    return None
+
+
+def balance(c: Case) -> Broken:
+    """energy - work + drag is constant where nothing touches, and never rises;
+    the printed share is that of the rows."""
+    rows = c.base.csv
+    internal = max((rows["kinetic"] + rows["elastic"]).max(), 1e-12)
+    found = re.search(r"energy off by (\S+) J \((\S+) % of the largest "
+                      "internal energy", c.base.text)
+    if found:
+        off, share = (abs(float(a)) for a in found.groups())
+        if share < .3 * 100 * off / internal - .05:
+            return "share", [f"{found[0]}; the rows: "
+                             f"{100 * off / internal:.3g} %"]
+    off = rows["balance"][-1] / internal
+    if c.sound and (off > .02 or (off < -.02 and not c.contact)):
+        return "off", [f"{off:.3f} of the internal energy; the motion is "
+                       "right to {:.1e} {:.1e}".format(*c.error())]
+    return None
+
+
+def limit(c: Case) -> Broken:
+    """The named limit is near the bound, of the stiffest stretch."""
+    named = re.search(r"% of the stability limit \((\S+) s, (\S+)\)",
+                      c.base.text)
+    largest = LIMIT.get(named[2], 0) if named else 0
+    if not named or not largest or {"damping", "drag"} & set(c.scene):
+        return None
+    got, bound = float(named[1]), max(n.omega() for n in c.nets()) / largest
+    if "tear" not in c.scene and bound and not .85 < got * bound < 1.02:
+        return "other", [f"{got} s, expected {1 / bound:.4g} s"]
+    return None
+
+
+def restart(c: Case) -> Broken:
+    """Stopped somewhere and continued from a checkpoint: the same bits."""
+    file = c.folder / "a.check"
+    file.unlink(missing_ok=True)
+    with subprocess.Popen(
+            [c.cloth, *options(c.scene, c.folder), "--headless",
+             "--checkpoint", file, "--every-seconds", "0"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as first:
+        while first.poll() is None and not file.exists():
+            time.sleep(.001)
+        first.terminate()
+        said = first.communicate(timeout=60)[1].decode().splitlines()
+    if not file.exists() or first.returncode not in (0, 3, 143):
+        return "refused", said
+    return differs("bits", c, Run(c.cloth, c.folder, "--restart", "a.check"))
+
+
+def differs(kind: str, c: Case, run: Run) -> Broken:
+    if run.bits == c.base.bits:
+        return None
+    return kind, [f"status {run.status}", *run.said]
+
+
+def files(c: Case) -> Broken:
+    """Written and read again, and by other threads: the same bits."""
+    c.run("--write-config", "a.toml")
+    return differs("config", c, Run(c.cloth, c.folder, "--config", "a.toml")
+                   ) or differs("threads", c, c.run("--threads", "3"))
+
+
+def symmetry(c: Case) -> Broken:
+    """In other units the numbers are the same, scaled: to the bit for the
+    explicit methods by fixed steps."""
+    other = c.run(**scaled(c.scene, 4., .5))
+    x, y = c.base.net[0], other.net[0]
+    if other.status or len(x) != len(y):
+        return "status", [f"status {other.status}, {len(y)} nodes, not "
+                          f"{len(x)}", *other.said]
+    size = np.ptp(x, axis=0).max(initial=1e-9)
+    off = np.abs(y / 4 - x).max(initial=0) / size
+    exact = c.fixed and c.scene.get("method") in LIMIT
+    if off > (0 if exact else 1e-6):
+        return "units", [f"positions differ by {off:.1e} of the size"]
+    return None
+
+
+def remedy(c: Case) -> Broken:
+    """What is named works, run as it stands."""
+    named = re.search(r"((?:--(?:dt|method) \S+ ?(?:and )?)+)works",
+                      " ".join(c.base.said))
+    if named:
+        again = c.run(**{word: value if word == "method" else float(value)
+                         for word, value in re.findall(
+                             r"--(dt|method) (\S+)", named[1])})
+        if again.status != 0:
+            return "fails", [named[0], *again.said]
+    return None
+
+
+PROMISES = {f.__name__: f for f in (
+    healthy, sick, end, measure, balance, limit, restart, files, symmetry,
+    remedy)}
+
+
+def broken(c: Case, promise: str) -> Broken:
+    """What is wrong with a run that was not refused."""
+    early = ("healthy", "limit", "remedy")
+    if c.base.status == 2 or (c.base.status and promise not in early):
+        return None
+    return PROMISES[promise](c)
