@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "lab/fast/Energy.hpp"
-#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Acting.hpp"
 #include "lab/scenes/Interrupt.hpp"
@@ -23,10 +22,9 @@
 
 namespace lab {
 
-Run::Run(Scene& scene, const Options& o, Live* live)
+Run::Run(Scene& scene, const Options& o)
     : scene_(scene),
       o_(o),
-      live_(live),
       progress_(o.quiet),
       observer_(o.model, scene),
       frames_({{FrameFormat::vtp, o.vtp}, {FrameFormat::ply, o.ply}},
@@ -60,7 +58,7 @@ void Run::start() {
 }
 
 void Run::restart() {
-  live_ ? live_->restart(o_.model) : scene_.restart();
+  scene_.restart();
   told_ = false;
   start();
 }
@@ -71,12 +69,12 @@ bool Run::cut_short() const {
 }
 
 void Run::check() {
-  live_ ? live_->check() : scene_.check();
+  scene_.check();
   tell_failure();
 }
 
 void Run::advance(int most) {
-  live_ ? live_->step() : scene_.steps_at_once(most, o_.model.t_end);
+  scene_.steps_at_once(most, o_.model.t_end);
   look();
 }
 
@@ -129,9 +127,9 @@ void Run::announce() {
     std::cout << line << '\n';
   const std::string_view method = scene_.method().name;
   const double dt = scene_.dt();
-  const auto [limit, since] = live_ && !scene_.control()
-                                  ? live_->least_limit()
-                                  : Live::Limit{scene_.safe_limit()};
+  const auto [limit, since] = scene_.control()
+                                  ? Scene::Limit{scene_.safe_limit()}
+                                  : scene_.least_limit();
   const bool sharp = scene_.stepper().time_step().rule == StepRule::sharp;
   std::ostringstream out;
   out.precision(3);
@@ -241,8 +239,8 @@ int Run::finish() {
       std::cout << verdict_->text() << '\n';
     else if (!scene_.failure() && !o_.bounds_error)
       std::cout << "not compared with half of dt\n";
-    if (live_ && live_->changes_left() > 0)
-      warn(CME212::count_of(live_->changes_left(), "change") +
+    if (scene_.changes_left() > 0)
+      warn(CME212::count_of(scene_.changes_left(), "change") +
            " would come after the end");
   }
   if (scene_.failure() || !judge()) return 3;
@@ -279,7 +277,6 @@ void Run::archive(Archive& a) {
                                     asked);
   a(written_)(missed_).require(written_ >= 0);
   rows_.archive(a);
-  if (live_) live_->archive(a);
 }
 
 /** Write a checkpoint; before it the rows so far, so that these are there for

@@ -17,7 +17,6 @@
 
 namespace lab {
 
-class Live;
 class Scene;
 class StepControl;
 
@@ -26,11 +25,10 @@ class Run {
  public:
   /** Output files are opened now, so that a wrong path ends the run before it
    * starts; a checkpoint is loaded into the scene. Keeps references.
-   * @param live if its scene is to be changed on the way; else null
    * @pre @a scene is at t = 0
    * Throws std::runtime_error; SceneError: the checkpoint is of another scene.
    */
-  Run(Scene& scene, const Options& o, Live* live = nullptr);
+  Run(Scene& scene, const Options& o);
 
   /** Back to t = 0. */
   void restart();
@@ -76,7 +74,6 @@ class Run {
  private:
   Scene& scene_;
   const Options& o_;
-  Live* const live_;
   Progress progress_;
   Observer observer_;
   std::optional<CME212::OutputFile> csv_;

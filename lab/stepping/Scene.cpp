@@ -1,6 +1,7 @@
 #include "lab/stepping/Scene.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "CME212/Util.hpp"
@@ -12,11 +13,12 @@
 namespace lab {
 
 SceneParts::SceneParts(const Model& m, Net mesh)
-    : model_(m), mesh_{std::move(mesh), {}} {
+    : made_of_(m), model_(m), mesh_{std::move(mesh), {}} {
   build();
 }
 SceneParts::SceneParts(const SceneParts& other)
-    : model_(other.model_),
+    : made_of_(other.made_of_),
+      model_(other.model_),
       mesh_(other.mesh_),
       built_(other.built_),
       held_(other.held_) {
@@ -28,17 +30,28 @@ Scene::Scene(const Model& m, Net mesh)
     : Scene(m, std::move(mesh), m.step, *m.method) {}
 Scene::Scene(const Model& m, Net mesh, const TimeStep& step,
              const MethodEntry& method)
-    : SceneParts(m, std::move(mesh)), Stepper(built_, step, method) {
+    : SceneParts(m, std::move(mesh)),
+      Stepper(built_, step, method),
+      first_(method),
+      changes_(read_changes(m.at)) {
   confirm_by([this](const Energies& e) { return confirms(e); });
+  await_change();
 }
 
 Scene::Scene(const Scene& other, const TimeStep& step,
              const MethodEntry& method)
     : SceneParts(other),
       Stepper(built_, step, method, other.time()),
+      first_(method),
+      changes_(other.changes_.begin() + std::ptrdiff_t(other.made_),
+               other.changes_.end()),
       changed_(true) {
+  if (method.info.name != other.method().name)
+    std::erase_if(changes_,
+                  [](const Change& c) { return c.name() == "method"; });
   if (other.follows_drag()) follow_drag();
   confirm_by([this](const Energies& e) { return confirms(e); });
+  await_change();
 }
 
 /** Build the system as it starts. */
@@ -69,9 +82,13 @@ void SceneParts::hold() {
 }
 
 void Scene::restart() {
-  changed_ = false, diagnosis_.reset();
+  changed_ = false, diagnosis_.reset(), made_ = 0;
+  if (first_.info.name != method().name)
+    Stepper::change_method(first_, time_step());
+  model_ = made_of_;
   build();
   Stepper::restart();
+  await_change();
   if (witness_) witness_->restart();
 }
 
@@ -80,27 +97,93 @@ void Scene::restart() {
 template <typename Change>
 void Scene::edit(Change change) {
   Stepper::edit(change);
-  changed_ = true;
-  note_change();
+  note_change(true);
 }
 
 void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
   Stepper::change_method(method, step);
-  changed_ |= steps() > 0;
-  note_change();
+  if (!makes_) first_ = method;
+  note_change(steps() > 0);
 }
 
-void Scene::note_change() {
+void Scene::take_method(const MethodEntry& method) {
+  TimeStep step = time_step();
+  if (step.fixed()) step.dt = dt();
+  try {
+    change_method(method, step);
+  } catch (const std::invalid_argument&) {  // it can't choose
+    step.dt = dt(), step.rule = StepRule::fixed;
+    change_method(method, step);
+  }
+}
+
+void Scene::fit_step() {
+  if (!time_step().fixed() && dt() > safe_limit())
+    change_method(method_entry(), time_step());
+}
+
+/** @param by_hand it is a change that no finer run makes by itself */
+void Scene::note_change(bool by_hand) {
+  if (makes_) return;
+  changed_ |= by_hand;
   diagnosis_.reset();
   if (witness_) witness_->change();
+}
+
+/** Let the next change of Model::at come when it is due. */
+void Scene::await_change() {
+  if (changes_left() > 0) at(changes_[made_].time, [this] { make_change(); });
+}
+
+void Scene::make_change() {
+  makes_ = true;
+  Line words(changes_[made_++].request);
+  scene_requests().find(words)->run(words, this);
+  fit_step();
+  makes_ = false;
+  await_change();
+}
+
+Scene::Limit Scene::least_limit() const {
+  Limit least = {safe_limit()};
+  if (changes_.empty()) return least;
+  Scene ahead(made_of_, mesh_.mesh, time_step(), first_);
+  while (ahead.changes_left() > 0) {
+    const double since = ahead.changes_[ahead.made_].time;
+    ahead.make_change();
+    if (const double limit = ahead.safe_limit(); limit < least.limit)
+      least = {limit, since};
+  }
+  return least;
+}
+
+void Scene::archive(Archive& a) {
+  std::string made;
+  for (std::size_t k = 0; k < made_; ++k) made += changes_[k].request + '\n';
+  a(made);
+  if (a.loads()) {
+    std::string before;
+    while (before.size() < made.size() && changes_left() > 0) {
+      before += changes_[made_].request + '\n';
+      if (made.starts_with(before)) make_change();
+    }
+    if (before != made)
+      throw SceneError("at",
+                       "does not begin with the changes that were made "
+                       "until the checkpoint");
+  }
+  for (HeldNodes& h : held_)
+    for (auto& [id, place] : h.nodes) a(place);
+  if (a.loads() && made_ > 0) Stepper::edit([this] { hold(); });
+  Stepper::archive(a);
 }
 
 void Scene::change_forces(const Model& m) {
   Cloth fresh;  // has the ids that this cloth had when it was built
   build_model(fresh, m, mesh_.mesh);
   CombinedForces acting = force_of(m, mesh_.mesh, fresh);
-  const bool changed = changed_ || steps() > 0;
-  edit([&] {
+  if (!makes_) made_of_ = m;
+  Stepper::edit([&] {
     model_ = m;
     take_forces(std::move(acting));
     for (Edge e : cloth().edges())
@@ -108,8 +191,7 @@ void Scene::change_forces(const Model& m) {
     forget_limits();
     make_method();
   });
-  changed_ = changed;
-  if (!changed) note_change();
+  note_change(steps() > 0);
 }
 
 namespace {
@@ -241,8 +323,8 @@ TimeStep Scene::finer_step(double share) const {
 
 std::unique_ptr<Scene> Scene::finer() const {
   if (changed_) return branch(0.5);
-  auto finer = std::make_unique<Scene>(model_, mesh_.mesh, finer_step(0.5),
-                                       method_entry());
+  auto finer =
+      std::make_unique<Scene>(made_of_, mesh_.mesh, finer_step(0.5), first_);
   finer->confirm_by([](const Energies&) { return true; });
   return finer;
 }
@@ -276,7 +358,7 @@ std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
       .dt = cure.dt,
       .tolerance = cure.method.info.adaptive ? time_step().tolerance : 0};
   if (!changed_)
-    return std::make_unique<Scene>(model_, mesh_.mesh, step, cure.method);
+    return std::make_unique<Scene>(made_of_, mesh_.mesh, step, cure.method);
   const Scene* kept = witness_ ? witness_->kept() : nullptr;
   return std::make_unique<Scene>(kept ? *kept : *this, step, cure.method);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lab/scenes/Compose.hpp"
+#include "lab/stepping/Changes.hpp"
 #include "lab/stepping/Stepper.hpp"
 #include "lab/stepping/Witness.hpp"
 
@@ -24,7 +25,7 @@ inline double evaluations_of(const MethodInfo& m) {
 /** The cloth of a model, and what acts on it: what a Scene steps. */
 class SceneParts {
  protected:
-  Model model_;
+  Model made_of_, model_;  // at the start; now
   BuiltMesh mesh_;
   System built_;
   std::vector<HeldNodes> held_;
@@ -55,7 +56,9 @@ class Scene : private SceneParts, private Stepper {
         const MethodEntry& method);
   /** A copy of the present state of @a other, its pins and its hand, to
    * continue with another method and step: at its time, but with no step done,
-   * no force evaluated and nothing in flow().  @pre step.fixed() */
+   * no force evaluated and nothing in flow(). Changes of Model::at are still to
+   * come, but those to another method only if @a method is that of @a other.
+   * @pre step.fixed() */
   Scene(const Scene& other, const TimeStep& step, const MethodEntry& method);
 
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
@@ -64,6 +67,10 @@ class Scene : private SceneParts, private Stepper {
   /** Its model, with the changes of forces. */
   const Model& model() const { return model_; }
   const BuiltMesh& mesh() const { return mesh_; }
+  /** The id of the node of this number in the mesh. */
+  unsigned id_of(unsigned number) const {
+    return number < mesh_.ids.size() ? mesh_.ids[number] : unsigned(-1);
+  }
   /** The forces of the model, without the hand. */
   const CombinedForces& force() const { return built_.acting; }
   /** The cloth; between two steps it may be changed in any way. */
@@ -74,13 +81,27 @@ class Scene : private SceneParts, private Stepper {
   /** A warning about the first of them, right after its step; else "". */
   std::string missed_text() const;
 
+  /** The number of changes of Model::at that are still to be made. Each is made
+   * in the first state from its time on, at which a step ends. */
+  std::size_t changes_left() const { return changes_.size() - made_; }
+  /** A stability limit [s], and the time of the change that brings it [s]. */
+  struct Limit {
+    double limit, since = 0;
+  };
+  /** The shortest limit of the run: safe_limit() at the start, and after each
+   * change of Model::at, made without a step.
+   * Complexity: a scene from the mesh; for each change, as safe_limit() */
+  Limit least_limit() const;
+  /** As that of Stepper. What was changed by hand is not saved. */
+  void archive(Archive& a);
+
   const Stepper& stepper() const { return *this; }
-  using Stepper::archive, Stepper::check, Stepper::control, Stepper::done,
-      Stepper::drift, Stepper::dt, Stepper::energy, Stepper::evaluations,
-      Stepper::failure, Stepper::flow, Stepper::follow_drag,
-      Stepper::guard_interval, Stepper::lost, Stepper::method, Stepper::run_to,
-      Stepper::safe_limit, Stepper::settle, Stepper::settled_steps,
-      Stepper::step, Stepper::steps, Stepper::steps_at_once, Stepper::time;
+  using Stepper::check, Stepper::control, Stepper::done, Stepper::drift,
+      Stepper::dt, Stepper::energy, Stepper::evaluations, Stepper::failure,
+      Stepper::flow, Stepper::follow_drag, Stepper::guard_interval,
+      Stepper::lost, Stepper::method, Stepper::run_to, Stepper::safe_limit,
+      Stepper::settle, Stepper::settled_steps, Stepper::step, Stepper::steps,
+      Stepper::steps_at_once, Stepper::time;
 
   /** From now on witness() looks at the run, unless its method was added: that
    * may not run twice.  @param t_end, whole as there */
@@ -104,6 +125,10 @@ class Scene : private SceneParts, private Stepper {
   /** Another method and step.  Throws as the constructor; then nothing has
    * changed. */
   void change_method(const MethodEntry& method, const TimeStep& step);
+  /** Another method by the present step: fixed, if it can choose none. */
+  void take_method(const MethodEntry& method);
+  /** Choose a chosen step anew if it is above the limit now. */
+  void fit_step();
   /** Take the forces, K and gravity of @a m, which has the same cloth. Rest
    * lengths, masses and constraints stay.  O(building the cloth) */
   void change_forces(const Model& m);
@@ -154,7 +179,11 @@ class Scene : private SceneParts, private Stepper {
   std::unique_ptr<Scene> beyond_failure(double distance) const;
 
  private:
-  bool changed_ = false;                        // since the start
+  MethodEntry first_;                           // before changes_
+  std::vector<Change> changes_;                 // of Model::at
+  std::size_t made_ = 0;                        // of changes_
+  bool makes_ = false;                          // one of them is being made
+  bool changed_ = false;                        // by hand, since the start
   mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
   std::unique_ptr<Witness> witness_;
 
@@ -163,7 +192,9 @@ class Scene : private SceneParts, private Stepper {
   void pull(std::optional<HandForce> hand);
   TimeStep finer_step(double share) const;
   bool confirms(const Energies& e) const;
-  void note_change();
+  void note_change(bool by_hand);
+  void await_change();
+  void make_change();
 };
 
 }  // namespace lab

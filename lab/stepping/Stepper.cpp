@@ -162,6 +162,10 @@ static bool works(const System& s, const StepClock& c) {
 
 bool Stepper::steps_at_once(int most, double t_end) {
   t_end_ = t_end;
+  while (event_time_ <= time() + no_step * clock_.dt) {
+    event_time_ = no_limit;
+    std::exchange(event_, nullptr)();
+  }
   const bool good = some_steps(most);
   for (SettledReader* r : readers_) r->settle(steps(), settled_steps());
   return good;
@@ -201,7 +205,8 @@ int Stepper::steps_to_check(int most) const {
 
 bool Stepper::advance(int most) {
   const double dt = clock_.dt;
-  const double end = std::min(t_end_, constraint_.next_velocity_jump(time()));
+  const double end =
+      std::min({t_end_, event_time_, constraint_.next_velocity_jump(time())});
   const double left = (end - time()) / dt;  // in steps
   const bool last = left < 1 + no_step, whole = std::abs(left - 1) < no_step;
   const double h = whole || left > 2 - no_step ? dt

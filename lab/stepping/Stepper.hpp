@@ -155,6 +155,11 @@ class Stepper {
   void confirm_by(std::function<bool(const Energies&)> confirms) {
     confirms_ = std::move(confirms);
   }
+  /** Call @a make in the first state from @a time [s] on, before the next step;
+   * a step ends there. It may call at() for what comes next. */
+  void at(double time, std::function<void()> make) {
+    event_time_ = time, event_ = std::move(make);
+  }
   /** The energy of springs strained by round-off [J]. */
   double round_off() const { return guard_->round_off(); }
   /** Force evaluations since the start, without those in linear solves. */
@@ -249,10 +254,12 @@ class Stepper {
   double largest_gamma_ = 0;  // of drag_ [1/s]
   double sampled_ = 0, drag_power_ = 0;  // time of last sample [s]; then [W]
   std::function<bool(const Energies&)> confirms_;
-  long long evaluations_ = 0;  // besides those of force_
-  Work work_;                  // of earlier methods
-  double start_energy_ = 0;    // [J]
-  std::string error_;          // of the method
+  double event_time_ = no_limit;  // [s]
+  std::function<void()> event_;   // then
+  long long evaluations_ = 0;     // besides those of force_
+  Work work_;                     // of earlier methods
+  double start_energy_ = 0;       // [J]
+  std::string error_;             // of the method
   mutable std::vector<SettledReader*> readers_;
 
   double remove_overlaps();

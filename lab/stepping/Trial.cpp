@@ -125,7 +125,13 @@ Answer Observer::answer(const Model& m, const Scene& scene) const {
 }
 
 double step_of(const Model& m) {
-  const double dt = m.step.fixed() ? m.step.dt : Scene(m).dt();
+  double dt = m.step.dt;
+  if (!m.step.fixed()) {
+    const Scene scene(m);
+    const double limit = scene.least_limit().limit;
+    dt = scene.dt() *
+         (limit < scene.safe_limit() ? limit / scene.safe_limit() : 1);
+  }
   return m.t_end > 0 ? m.t_end / std::ceil(m.t_end / dt * (1 - 1e-12)) : dt;
 }
 

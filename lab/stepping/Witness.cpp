@@ -63,7 +63,8 @@ double distance(const Cloth& a, const Cloth& b) {
 }
 
 /** The change from @a b to @a a as a share: of lengths by the size of the
- * cloth, of energies by the largest one, else by the larger of both. */
+ * cloth, of energies by the largest one, else by the larger of both, but no
+ * less than a strain of 1e-7 or the force of a spring with it. */
 double changed_by(const Answer& a, const Answer& b, const Measure& what,
                   const Cloth& g, double energy) {
   if (a.size() != b.size()) return no_limit;
@@ -74,6 +75,11 @@ double changed_by(const Answer& a, const Answer& b, const Measure& what,
   const std::string unit = unit_of(what);
   if (unit == "m" && !what.is_time()) whole = std::max(whole, side_of(g));
   if (unit == "J" && !what.is_time()) whole = std::max(whole, energy);
+  constexpr double strain = 1e-7;
+  if (unit.empty()) whole = std::max(whole, strain);
+  if (unit == "N")
+    for (Edge e : g.edges())
+      whole = std::max(whole, strain * e.value().K * e.value().L);
   return far / whole;
 }
 
