@@ -164,7 +164,7 @@ void Run::announce() {
   std::cout << out.str() << std::endl;  // at once, also into a pipe
   if (first_step_ == 0)  // they are about the cloth as it was made
     for (const auto& w : warnings(o_.model, mesh, scene_.cloth(), dt)) warn(w);
-  if (const double work = scene_.flow().work; first_step_ == 0 && work != 0)
+  if (const double work = scene_.flow().work; first_step_ == 0 && work > 0)
     warn("at t = 0 the obstacles give " + CME212::short_text(work) +
          " J to the cloth, which counts as their work");
   if (scene_.method().multirate && limit <= scene_.safe_limit(table::verlet))

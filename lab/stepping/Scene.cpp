@@ -68,6 +68,9 @@ void SceneParts::build() {
   built_.overlaps = false;
   for (Node n : g.nodes())
     built_.overlaps |= model_.starts_inside(n.position());
+  if (const auto& most = model_.tear_strain)
+    for (Edge e : g.edges())
+      built_.overlaps |= e.length() > (1 + *most) * e.value().L;
 }
 
 void SceneParts::take_forces(CombinedForces acting) {

@@ -40,8 +40,9 @@ class SceneParts {
 /** A scene, ready to run. */
 class Scene : private SceneParts, private Stepper {
  public:
-  /** The scene of @a m at t = 0. If nodes lie inside obstacles, all constraints
-   * act once: their work is in flow().
+  /** The scene of @a m at t = 0. If nodes lie inside obstacles, or springs are
+   * strained so that they break, all constraints act once: their work is in
+   * flow().
    * @pre m.step.dt > 0
    * Throws std::invalid_argument if the step is to be chosen and nothing
    * bounds it; InputError, SceneError. */

@@ -48,7 +48,7 @@ struct System {
   CombinedForces acting{CombinedForces::List()};  ///< without the hand
   std::optional<HandForce> hand;
   std::optional<WatchedConstraint> watched;  ///< nullopt only until it is built
-  bool overlaps = false;                     ///< nodes start inside an obstacle
+  bool overlaps = false;  ///< at the start a constraint has something to do
 };
 
 /** Is told of the steps of a run: see Settled, Witness. */

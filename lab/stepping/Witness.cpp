@@ -83,6 +83,11 @@ double changed_by(const Answer& a, const Answer& b, const Measure& what,
   return far / whole;
 }
 
+/** A change of energy is a share of this, or more [J]. */
+double least_energy(const Verdict& v) {
+  return std::max(v.scale, 20 * v.slack);
+}
+
 }  // namespace
 
 bool run_until(Scene& s, double time) {
@@ -128,7 +133,7 @@ std::string Verdict::difference() const {
   else if (!has_place())
     add("positions that differ by up to " + percent(apart) +
         " of the size of the cloth");
-  if (!has_answer())
+  if (!has_answer() && !(asked == "energy" && is_off()))
     add("another " + asked +
         (answer == no_limit ? ", or none" : ", by " + percent(answer)));
   return all;
@@ -161,6 +166,7 @@ Witness::~Witness() { scene_.stepper().tell_no_more(this); }
 void Witness::restart() {
   looks_.clear(), kept_.reset(), drifts_.clear();
   windows_ = Verdict(), windows_.whole = false;
+  windows_.sudden = scene_.model().has_contact();
   sweeps_ = 0, said_.reset(), said_at_ = -1;
   begin_ = scene_.time();
   const Cloth& g = scene_.cloth();
@@ -242,7 +248,7 @@ void Witness::window() {
     v.asked = name_of(what);
     v.answer = std::max(
         v.answer, changed_by(answer(m, scene_, what), answer(m, *finer, what),
-                             what, scene_.cloth(), v.scale));
+                             what, scene_.cloth(), least_energy(v)));
   } catch (const Interrupted&) {  // the run ends, too
     kept_.reset();
   }
@@ -288,6 +294,7 @@ const Verdict& Witness::verdict(const Answer* mine) const {
 Verdict Witness::judge_whole(const Answer* mine) const {
   Verdict v;
   const Model& m = scene_.model();
+  v.sudden = m.has_contact();
   try {
     const auto finer = kept_ ? kept_->branch(1) : scene_.finer();
     std::optional<Observer> observer;
@@ -321,7 +328,7 @@ Verdict Witness::judge_whole(const Answer* mine) const {
     if (observer) {
       v.asked = name_of(m.measure);
       v.answer = changed_by(*mine, observer->answer(m, *finer), m.measure,
-                            scene_.cloth(), v.scale);
+                            scene_.cloth(), least_energy(v));
     }
   } catch (const std::invalid_argument&) {  // no such step
     v.failed = true;

@@ -25,6 +25,7 @@ struct Verdict {
   double scale = 0;     ///< the largest internal energy of the finer run [J]
   double mine = 0;      ///< that of the run [J]
   double slack = 0;     ///< a difference that says nothing [J]
+  bool sudden = false;  ///< contact and tearing come at once: errors of order 1
   double apart = 0;     ///< largest distance of a node from its place in the
                         ///< finer run, by the size of the cloth
   std::string asked;    ///< the quantity that was compared; "": none
@@ -37,10 +38,11 @@ struct Verdict {
    * end, or at any time. */
   bool is_off() const { return failed || exceeds(std::abs(off), 0.5); }
   bool was_off() const { return failed || exceeds(std::max(gain, loss), 0.5); }
-  /** The method has added more energy than is tolerated, and the run has not
-   * forgotten it. */
+  /** The method has added more energy than is tolerated, or 5 times that if
+   * changes are sudden, and the run has not forgotten it. */
   bool gains() const {
-    return exceeds(gain, 1) && (is_off() || apart > Attempt::same_place);
+    return exceeds(gain, sudden ? 5 : 1) &&
+           (is_off() || apart > Attempt::same_place);
   }
   /** Positions are known, but the answer is another by more than half: it can't
    * be trusted at all. */

@@ -103,15 +103,29 @@ class Case:
         if len(x) != truth.alive.sum():
             return np.nan, np.nan
         place = np.abs(x - truth.x[truth.alive]).max() / truth.size
-        if not truth.alive.all() or not np.isfinite(place):
+        if not np.isfinite(place):
             return place, 0.
-        a, b = (sum(truth.net.energies(*state).values()) for state in
-                ((x, v), (truth.x, truth.v)))
+        mine, theirs = np.zeros((2, *truth.x.shape)), np.array(
+            [truth.x, truth.v]) * truth.alive[:, None]
+        mine[:, truth.alive] = x, v
+        a, b = (sum(truth.net.energies(*state).values())
+                for state in (mine, theirs))
         return place, abs(a - b) / max(truth.internal, 1e-12)
 
     @property
     def sound(self) -> bool:
-        return max(self.error()) < .01 and self.exact < .003
+        return (max(self.error()) < .01 and self.exact < .003 and
+                self.answer_error() < .01)
+
+    def answer_error(self) -> float:
+        """How far the answer is from that of the truth, as a share."""
+        truth, got = self.truth, self.base.answer()
+        net, end = truth.net, self.scene["t-end"]
+        wanted = quantity(self.scene["measure"], net, truth.x, truth.v, end)
+        if wanted is None or got is None or not truth.alive.all():
+            return 0.
+        return float(np.abs(got - wanted).max() /
+                     max(*np.abs(wanted), truth.internal * 1e-6, 1e-9))
 
 
 def healthy(c: Case) -> Broken:
