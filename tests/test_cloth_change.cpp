@@ -17,9 +17,9 @@ TEST_F(ClothProgram, MakesEachChangeAtItsTime) {
   std::string list;
   for (const std::string& change : changes)
     list += (list.empty() ? "'" : ", '") + change + "'";
-  Result r = run(net + "--t-end 0.2 --csv " + path("e.csv") +
-                 " --every 1 --config " +
-                 file("s.toml", "at = [" + list + "]\n"));
+  Result r =
+      run(net + "--t-end 0.2 --csv " + path("e.csv") + " --every 1 --config " +
+          file("s.toml", "at = [" + list + "]\n"));
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_TRUE(has(r.out, "64 nodes and 208 edges left"));
   double before = 0;

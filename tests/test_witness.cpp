@@ -58,6 +58,30 @@ TEST(Witness, FindsNothingWrongInSoundRuns) {
   }
 }
 
+TEST(Witness, RepeatsTheChangesOfAScene) {
+  Model m = hanging(5, 0.5);
+  m.at = {"0.2004 stiffness 1600", "0.3 unpin 0", "0.35 cut 6 7"};
+  const Verdict good = verdict(m, "verlet", 0.001);
+  EXPECT_TRUE(good.whole && good.fine()) << good.text();
+  m.at = {"0.2 method forward-euler"};
+  const Verdict bad = verdict(m, "verlet", 0.01);
+  EXPECT_TRUE(bad.whole && bad.gains()) << bad.text();
+}
+
+TEST(Witness, HoldsErrorsOfAFastFallAgainstItsWay) {
+  Model m = sheet(3, 2);
+  m.sheets[0].velocity = Point(0, 0, -100);
+  EXPECT_TRUE(verdict(m, "verlet", 0.01).fine());
+}
+
+TEST(Witness, TearsAtTheStartWhatIsStrainedTooFar) {
+  Model m = hanging(5, 0.1);
+  m.rest_length = 0.7, m.tear_strain = 0.1;
+  Scene scene(m);
+  EXPECT_EQ(scene.cloth().num_edges(), 0u);
+  EXPECT_TRUE(verdict(m, "verlet", 0.001).fine());
+}
+
 TEST(Witness, SeesWhatTheMethodMadeOrLost) {
   Model m = hanging(9, 2);
   const Verdict loss = verdict(m, "implicit-euler", 0.02);

@@ -447,7 +447,6 @@ bool Run::wrong() const {
 }
 
 bool Run::judge() {
-  const auto& control = scene_.control();
   if (find_verdict() && !std::exchange(judged_, true)) {
     if (wrong()) {
       std::string text = verdict_->wrong_text() + "; ";
@@ -462,8 +461,6 @@ bool Run::judge() {
                               : verdict_->difference()) +
            "; " + scene_.remedy());
     }
-    if (!o_.quiet && control && control->state().gain > control->tolerance())
-      warn(gain_text(*control) + "; " + scene_.remedy());
   }
   return !wrong();
 }

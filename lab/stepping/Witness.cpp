@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
+#include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/stepping/Scene.hpp"
@@ -49,31 +50,30 @@ double side_of(const Cloth& g) {
              : length / g.num_edges() * std::sqrt(double(g.num_nodes()));
 }
 
-/** The largest distance of a node of @a a from where it is in @a b, by the size
- * of the cloth; infinite if the node was removed there. */
-double distance(const Cloth& a, const Cloth& b) {
+/** The largest distance of a node of @a a from where it is in @a b, by @a size
+ * [m]; infinite if the node was removed there. */
+double distance(const Cloth& a, const Cloth& b, double size) {
   double most = 0;
   for (Node n : a.nodes()) {
     if (!arrays(b).node_in_use(n.id())) return no_limit;
     const Point there = arrays(b).node_with_id(n.id()).position();
     most = std::max(most, double(norm(n.position() - there)));
   }
-  const double side = side_of(a);
-  return side > 0 ? most / side : most;
+  return size > 0 ? most / size : most;
 }
 
 /** The change from @a b to @a a as a share: of lengths by the size of the
  * cloth, of energies by the largest one, else by the larger of both, but no
  * less than a strain of 1e-7 or the force of a spring with it. */
 double changed_by(const Answer& a, const Answer& b, const Measure& what,
-                  const Cloth& g, double energy) {
+                  const Cloth& g, double size, double energy) {
   if (a.size() != b.size()) return no_limit;
   const double far = a.empty() ? 0 : distance(a, b, what);
   if (!(far > 0)) return 0;
   const Answer none(a.size());
   double whole = std::max(distance(a, none, what), distance(b, none, what));
   const std::string unit = unit_of(what);
-  if (unit == "m" && !what.is_time()) whole = std::max(whole, side_of(g));
+  if (unit == "m" && !what.is_time()) whole = std::max(whole, size);
   if (unit == "J" && !what.is_time()) whole = std::max(whole, energy);
   constexpr double strain = 1e-7;
   if (unit.empty()) whole = std::max(whole, strain);
@@ -170,6 +170,7 @@ void Witness::restart() {
   sweeps_ = 0, said_.reset(), said_at_ = -1;
   begin_ = scene_.time();
   const Cloth& g = scene_.cloth();
+  from_ = center_of_mass(g);
   const double sweep =
       evaluations_of(scene_.method()) * (g.num_nodes() + g.num_edges());
   whole_ = std::isfinite(t_end_) &&
@@ -236,7 +237,8 @@ void Witness::window() {
     sweeps_ += sweeps_of(*finer);
     if (v.failed) return;
     v.slack = std::max(v.slack, slack);
-    v.apart = std::max(v.apart, distance(scene_.cloth(), finer->cloth()));
+    v.apart =
+        std::max(v.apart, distance(scene_.cloth(), finer->cloth(), size()));
     const auto half = d.begin() + std::ptrdiff_t(d.size() / 2);
     drifts_.push_back(2 *
                       (median({half, d.end()}) - median({d.begin(), half})));
@@ -248,10 +250,16 @@ void Witness::window() {
     v.asked = name_of(what);
     v.answer = std::max(
         v.answer, changed_by(answer(m, scene_, what), answer(m, *finer, what),
-                             what, scene_.cloth(), least_energy(v)));
+                             what, scene_.cloth(), size(), least_energy(v)));
   } catch (const Interrupted&) {  // the run ends, too
     kept_.reset();
   }
+}
+
+/** The size of the cloth or, if it is longer, its way since the start [m]. */
+double Witness::size() const {
+  const Cloth& g = scene_.cloth();
+  return std::max(side_of(g), double(norm(center_of_mass(g) - from_)));
 }
 
 /** Run @a finer through all looks_.
@@ -324,11 +332,11 @@ Verdict Witness::judge_whole(const Answer* mine) const {
           {d.begin() + std::ptrdiff_t(k), d.begin() + std::ptrdiff_t(end)});
       v.gain = std::max(v.gain, v.off), v.loss = std::max(v.loss, -v.off);
     }
-    v.apart = distance(scene_.cloth(), finer->cloth());
+    v.apart = distance(scene_.cloth(), finer->cloth(), size());
     if (observer) {
       v.asked = name_of(m.measure);
       v.answer = changed_by(*mine, observer->answer(m, *finer), m.measure,
-                            scene_.cloth(), least_energy(v));
+                            scene_.cloth(), size(), least_energy(v));
     }
   } catch (const std::invalid_argument&) {  // no such step
     v.failed = true;

@@ -27,7 +27,7 @@ struct Verdict {
   double slack = 0;     ///< a difference that says nothing [J]
   bool sudden = false;  ///< contact and tearing come at once: errors of order 1
   double apart = 0;     ///< largest distance of a node from its place in the
-                        ///< finer run, by the size of the cloth
+                        ///< finer run, by the size of the cloth or its way
   std::string asked;    ///< the quantity that was compared; "": none
   double answer = 0;    ///< the change of its value, as a share
   double cost = 0;      ///< force sweeps of the finer run, by those of the run
@@ -117,6 +117,7 @@ class Witness final : public SettledReader {
   int next_ = 0;      // the next look, in 64ths, or in 512ths of the run
   double due_ = 0;    // its time [s]
   double begin_ = 0;  // of the run [s]
+  Point from_;        // the center of mass then [m]
   std::vector<Look> looks_;
   std::unique_ptr<Scene> kept_;
   std::vector<double> drifts_;  // of the windows [J]
@@ -125,6 +126,7 @@ class Witness final : public SettledReader {
   mutable std::optional<Verdict> said_;
   mutable long long said_at_ = -1;  // steps
 
+  double size() const;
   void look_again();
   void window();
   std::vector<double> repeat(Scene& finer, Verdict& v, double& slack) const;

@@ -149,8 +149,10 @@ def healthy(c: Case) -> Broken:
 
 
 def sick(c: Case) -> Broken:
-    """A run whose positions or energy are far off is not silent."""
-    if not c.base.said and c.exact < .01 and max(c.error()) > .1:
+    """A run whose positions or energy are far off is not silent. The
+    velocities of symplectic-euler are those of a step before."""
+    parts = 1 if c.scene.get("method") == "symplectic-euler" else 2
+    if not c.base.said and c.exact < .01 and max(c.error()[:parts]) > .1:
         return "silent", ["positions off by %.2f of the size, energy by %.2f, "
                           "and nothing said" % c.error()]
     return None
@@ -212,7 +214,9 @@ def measure(c: Case) -> Broken:
     got, name, net = c.base.answer(), c.scene["measure"], c.nets()[1]
     x, v, m, springs = c.base.net
     late = any("after the end" in a for a in c.base.said)  # a change
-    if got is None or late or (len(x), len(springs)) != net.C.shape:
+    # The forces of xpbd are those of its multipliers.
+    own = "force" in name and c.scene.get("method") == "xpbd"
+    if got is None or late or own or (len(x), len(springs)) != net.C.shape:
         return None
     theirs, order = np.sort(springs[:, :2], axis=1), np.lexsort((net.j, net.i))
     K, L = springs[np.lexsort((theirs[:, 1], theirs[:, 0])), 2:].T
@@ -229,17 +233,10 @@ def measure(c: Case) -> Broken:
 
 
 def balance(c: Case) -> Broken:
-    """energy - work + drag is constant where nothing touches, and never rises;
-    the printed share is that of the rows."""
+    """energy - work + drag is constant where nothing touches, and never
+    rises."""
     rows = c.base.csv
     internal = max((rows["kinetic"] + rows["elastic"]).max(), 1e-12)
-    found = re.search(r"energy off by (\S+) J \((\S+) % of the largest "
-                      "internal energy", c.base.text)
-    if found:
-        off, share = (abs(float(a)) for a in found.groups())
-        if share < .3 * 100 * off / internal - .05:
-            return "share", [f"{found[0]}; the rows: "
-                             f"{100 * off / internal:.3g} %"]
     off = rows["balance"][-1] / internal
     if c.sound and (off > .02 or (off < -.02 and not c.contact)):
         return "off", [f"{off:.3f} of the internal energy; the motion is "
