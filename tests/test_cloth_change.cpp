@@ -89,7 +89,7 @@ TEST_F(ClothProgram, GoesOnAfterChangesToTheSameBits) {
       net +
       "--dt 0.00390625 --method verlet --at '0.03125 unpin 3' "
       "--at '0.0625 stiffness 300' --at '0.0625 cut 27 28' "
-      "--at '0.07 pin 36' --at '0.125 gravity 3' ";
+      "--at '0.0703125 pin 36' --at '0.125 gravity 3' ";
   const auto end = [this](const std::string& options) {
     const Result r = run(options + " --out " + path("end.net"));
     EXPECT_EQ(r.status, 0) << r.err;

@@ -64,7 +64,7 @@ TEST(Witness, RepeatsTheChangesOfAScene) {
   const Verdict good = verdict(m, "verlet", 0.001);
   EXPECT_TRUE(good.whole && good.fine()) << good.text();
   m.at = {"0.2 method forward-euler"};
-  const Verdict bad = verdict(m, "verlet", 0.01);
+  const Verdict bad = verdict(m, "verlet", 0.005);
   EXPECT_TRUE(bad.whole && bad.gains()) << bad.text();
 }
 

@@ -339,18 +339,20 @@ std::unique_ptr<Scene> Scene::branch(double share) const {
   return branch;
 }
 
-/** Has a finer run about this energy now, too? It begins in an earlier state.
+/** Has a finer run this energy now, too, to 10 %? It begins in an earlier
+ * state.
  */
 bool Scene::confirms(const Energies& e) const {
-  constexpr double same = 1.5;
+  constexpr double same = 1.1;
   const Scene* kept = witness_ ? witness_->kept() : nullptr;
   const double cost = 2 * double(steps()) * evaluations_of(method()) *
                       (cloth().num_nodes() + cloth().num_edges());
   if (!kept && (changed_ || cost > trial_work)) return false;
   try {
     const auto other = kept ? kept->branch(1) : finer();
-    return other->time() < time() && run_until(*other, time()) &&
-           e.internal() <= same * other->energy().internal();
+    if (other->time() >= time() || !run_until(*other, time())) return false;
+    const double mine = e.internal(), there = other->energy().internal();
+    return mine <= same * there && there <= same * mine;
   } catch (const Interrupted&) {
     return true;  // the run ends, too
   }

@@ -160,8 +160,8 @@ class Stepper {
   void at(double time, std::function<void()> make) {
     event_time_ = time, event_ = std::move(make);
   }
-  /** The energy of springs strained by round-off [J]. */
-  double round_off() const { return guard_->round_off(); }
+  /** DivergenceGuard::floor(): a negligible energy [J]. */
+  double floor() const { return guard_->floor(); }
   /** Force evaluations since the start, without those in linear solves. */
   long long evaluations() const { return evaluations_ + force_->evaluations(); }
   /** Method::pulls(). */

@@ -166,11 +166,10 @@ Witness::~Witness() { scene_.stepper().tell_no_more(this); }
 void Witness::restart() {
   looks_.clear(), kept_.reset(), drifts_.clear();
   windows_ = Verdict(), windows_.whole = false;
-  windows_.sudden = scene_.model().has_contact();
   sweeps_ = 0, said_.reset(), said_at_ = -1;
   begin_ = scene_.time();
   const Cloth& g = scene_.cloth();
-  from_ = center_of_mass(g);
+  from_ = center_of_mass(g), edges_ = g.num_edges();
   const double sweep =
       evaluations_of(scene_.method()) * (g.num_nodes() + g.num_edges());
   whole_ = std::isfinite(t_end_) &&
@@ -287,7 +286,7 @@ std::vector<double> Witness::repeat(Scene& finer, Verdict& v,
                                   double(run.step - before->step));
     before = &run;
   }
-  slack += scene_.stepper().round_off();
+  slack += scene_.stepper().floor() / 2;
   return d;
 }
 
@@ -302,7 +301,7 @@ const Verdict& Witness::verdict(const Answer* mine) const {
 Verdict Witness::judge_whole(const Answer* mine) const {
   Verdict v;
   const Model& m = scene_.model();
-  v.sudden = m.has_contact();
+  v.sudden = scene_.cloth().num_edges() != edges_;
   try {
     const auto finer = kept_ ? kept_->branch(1) : scene_.finer();
     std::optional<Observer> observer;
@@ -346,6 +345,7 @@ Verdict Witness::judge_whole(const Answer* mine) const {
 
 Verdict Witness::judge_windows() const {
   Verdict v = windows_;
+  v.sudden = scene_.cloth().num_edges() != edges_;
   const double n = double(drifts_.size());
   double sum = 0, squares = 0;
   for (double d : drifts_) {

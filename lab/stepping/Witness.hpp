@@ -25,7 +25,8 @@ struct Verdict {
   double scale = 0;     ///< the largest internal energy of the finer run [J]
   double mine = 0;      ///< that of the run [J]
   double slack = 0;     ///< a difference that says nothing [J]
-  bool sudden = false;  ///< contact and tearing come at once: errors of order 1
+  bool sudden = false;  ///< parts were removed, which comes at once: errors
+                        ///< of order 1
   double apart = 0;     ///< largest distance of a node from its place in the
                         ///< finer run, by the size of the cloth or its way
   std::string asked;    ///< the quantity that was compared; "": none
@@ -114,10 +115,11 @@ class Witness final : public SettledReader {
   double t_end_;
   const bool asked_whole_;
   bool whole_ = false;
-  int next_ = 0;      // the next look, in 64ths, or in 512ths of the run
-  double due_ = 0;    // its time [s]
-  double begin_ = 0;  // of the run [s]
-  Point from_;        // the center of mass then [m]
+  int next_ = 0;        // the next look, in 64ths, or in 512ths of the run
+  double due_ = 0;      // its time [s]
+  double begin_ = 0;    // of the run [s]
+  Point from_;          // the center of mass then [m]
+  unsigned edges_ = 0;  // then
   std::vector<Look> looks_;
   std::unique_ptr<Scene> kept_;
   std::vector<double> drifts_;  // of the windows [J]
