@@ -63,7 +63,7 @@ TEST(Witness, RepeatsTheChangesOfAScene) {
   m.at = {"0.2004 stiffness 1600", "0.3 unpin 0", "0.35 cut 6 7"};
   const Verdict good = verdict(m, "verlet", 0.001);
   EXPECT_TRUE(good.whole && good.fine()) << good.text();
-  m.at = {"0.2 method forward-euler"};
+  m.t_end = 0.4, m.at = {"0.2 method forward-euler"};
   const Verdict bad = verdict(m, "verlet", 0.005);
   EXPECT_TRUE(bad.whole && bad.gains()) << bad.text();
 }

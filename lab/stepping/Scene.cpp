@@ -135,7 +135,8 @@ void Scene::note_change(bool by_hand) {
 
 /** Let the next change of Model::at come when it is due. */
 void Scene::await_change() {
-  if (changes_left() > 0) at(changes_[made_].time, [this] { make_change(); });
+  at(changes_left() > 0 ? changes_[made_].time : no_limit,
+     [this] { make_change(); });
 }
 
 void Scene::make_change() {
@@ -179,6 +180,7 @@ void Scene::archive(Archive& a) {
     for (auto& [id, place] : h.nodes) a(place);
   if (a.loads() && made_ > 0) Stepper::edit([this] { hold(); });
   Stepper::archive(a);
+  Witness::archive(a, witness_.get());
 }
 
 void Scene::change_forces(const Model& m) {

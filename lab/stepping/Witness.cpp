@@ -274,7 +274,7 @@ std::vector<double> Witness::repeat(Scene& finer, Verdict& v,
       return d;
     }
     const Look other(finer);
-    d.push_back(factor * (run.loose || other.loose
+    d.push_back(factor * (run.loose + other.loose > 0
                               ? run.internal - other.internal
                               : run.total - other.total));
     v.scale = std::max(v.scale, other.internal);
@@ -288,6 +288,18 @@ std::vector<double> Witness::repeat(Scene& finer, Verdict& v,
   }
   slack += scene_.stepper().floor() / 2;
   return d;
+}
+
+void Witness::archive(Archive& a, Witness* w) {
+  std::vector<Look> looks;
+  if (w && w->whole_) looks = w->looks_;
+  a(looks);
+  for (const Look& l : looks)
+    a.require(std::isfinite(l.time + l.total + l.internal + l.kinetic) &&
+              l.step >= 0);
+  if (!a.loads() || !w || !w->whole_) return;
+  w->looks_ = std::move(looks);
+  w->look_again();
 }
 
 const Verdict& Witness::verdict(const Answer* mine) const {

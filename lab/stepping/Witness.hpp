@@ -100,6 +100,9 @@ class Witness final : public SettledReader {
    * @param mine the answer of the run to its question; null: none was asked
    * Throws Interrupted.  Complexity: twice the run; O(1) of windows */
   const Verdict& verdict(const Answer* mine = nullptr) const;
+  /** Save or load what a whole repetition is compared with.
+   * @param w null: save nothing, or forget what is loaded */
+  static void archive(Archive& a, Witness* w);
   /** The last verdict, or null. */
   const Verdict* said() const { return said_ ? &*said_ : nullptr; }
 
@@ -108,7 +111,8 @@ class Witness final : public SettledReader {
     long long step;
     double time;                      // [s]
     double total, internal, kinetic;  // [J]
-    bool loose;                       // EnergyFlow::loose
+    double loose;                     // EnergyFlow::loose
+    Look() = default;
     explicit Look(const Scene& s);
   };
   const Scene& scene_;
