@@ -43,8 +43,9 @@ double elastic_energy(const G& g, Spring spring) {
   return sum;
 }
 
-/** A step [s] that is stable in any shape: at most 2/omega, as omega^2 is at
- * most twice the sum of K at a node, over its mass.  O(N + edges)
+/** A step [s] with which small oscillations about any shape are stable: at most
+ * 2/omega, as omega^2 is at most twice the sum of K at a node, over its mass.
+ * O(N + edges)
  * @param spring spring(Edge) has K [N/m] */
 template <typename G, typename Spring>
 double stable_step(const G& g, Spring spring) {

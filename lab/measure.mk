@@ -157,7 +157,7 @@ pictures: test_screen $(B)/cloth
 	for scene in $(filter-out $(STAGES),$(call names,$(wildcard data/scenes/*.toml))); do \
 	  draw scene-$$scene.png --config $$scenes/$$scene.toml \
 	    $$(case $$scene in (tablecloth|push|mixed) echo --strain; esac); done; \
-	for scene in step path drag forward-euler midpoint; do status=0; \
+	for scene in step path below-the-limit drag forward-euler midpoint; do status=0; \
 	  draw fail-$$scene.png --config $$scenes/failures/$$scene.toml \
 	    || status=$$?; \
 	  [ $$status = 3 ] || { echo "$$scene does not fail" >&2; exit 1; }; done

@@ -60,38 +60,6 @@ TEST(Work, OfAMovingPinIsTheEnergyOfTheCloth) {
     }
 }
 
-// With a method of high order and drag, what is left are errors of the sums of
-// work and drag: of order 3, across the stop of a pin.
-TEST(Work, AndDragAreSummedToOrder3) {
-  Model m = pulled_sheet(9, "pefrl", 5e-4);
-  m.gravity = 0, m.damping = 1 / 81.;
-  m.pins[1].motion = {Point(1, 0, 0), 0.1};
-  double largest[2] = {0, 0};
-  for (double& most : largest) {
-    Scene s(m);
-    s.follow_drag();
-    s.run_to(0.2,
-             [&] { most = std::max(most, std::abs(s.drift(s.energy()))); });
-    m.step.dt /= 2;
-  }
-  EXPECT_LT(largest[0], 1e-6);
-  EXPECT_LT(largest[1], largest[0] / 6);
-}
-
-// A thrown sheet in two long steps that are exact but for 1e-8 J: the parabola
-// through three powers of drag tells what each step took.
-TEST(Work, OfDragInTheFirstOfTwoSteps) {
-  Model m = sheet(3, "rkn64", 0.1);
-  m.sheets[0].velocity = Point(1.4, -0.7, 2.1);
-  m.gravity = grav, m.damping = 1 / 9.;
-  Scene s(m);
-  s.follow_drag(), s.watch_energy(0.2);
-  s.run_to(0.2);
-  EXPECT_EQ(s.steps(), 2);
-  EXPECT_LT(std::abs(s.drift(s.energy())), 0.002 * s.flow().drag);
-  EXPECT_LT(s.energy_watch()->gain(), 0.002 * s.flow().drag);
-}
-
 // Nodes inside an obstacle at t = 0 are moved out: that is its work, the same
 // for every step, and no divergence.
 TEST(Work, OfAnObstacleOnNodesThatStartInIt) {
@@ -104,9 +72,7 @@ TEST(Work, OfAnObstacleOnNodesThatStartInIt) {
       Scene s(m);
       EXPECT_NEAR(s.flow().work, 34.402, 1e-3);
       EXPECT_NEAR(gain(s), 0, 1e-9);
-      s.watch_energy(0.1);
       EXPECT_TRUE(s.run_to(0.1)) << text_of(s.failure());
-      EXPECT_FALSE(s.energy_watch()->gains()) << method << dt;
     }
 }
 
@@ -128,20 +94,18 @@ TEST(Work, OfTheWind) {
 }
 
 // A cloth at rest has no energy but what the wind gives it: that is available
-// to the guard, whether anybody watches the energy or not.
+// to the guard.
 TEST(Work, OfTheWindIsAvailable) {
-  for (const char* method : {"verlet", "rk4", "implicit-euler"})
-    for (bool watched : {false, true}) {
-      Model m = sheet(3, method, 0.001);
-      m.gravity = 0;
-      m.pins = {pin_at_x(0)};
-      m.damping = 0.05;
-      m.wind = Wind{Point(0, 0, 5)};
-      Scene s(m);
-      if (watched) s.watch_energy(1);
-      EXPECT_TRUE(s.run_to(1, [] {})) << method << text_of(s.failure());
-      EXPECT_GT(s.energy().internal(), 0.1);
-    }
+  for (const char* method : {"verlet", "rk4", "implicit-euler"}) {
+    Model m = sheet(3, method, 0.001);
+    m.gravity = 0;
+    m.pins = {pin_at_x(0)};
+    m.damping = 0.05;
+    m.wind = Wind{Point(0, 0, 5)};
+    Scene s(m);
+    EXPECT_TRUE(s.run_to(1, [] {})) << method << text_of(s.failure());
+    EXPECT_GT(s.energy().internal(), 0.1);
+  }
 }
 
 // A pin that turns does work; the cloth has it, to the order of the method.
@@ -168,7 +132,6 @@ TEST(Work, OfAWallThatHitsASheetIsTwiceItsEnergy) {
   Scene s(m);
   ASSERT_TRUE(s.run_to(0.1));
   EXPECT_NEAR(s.flow().work, 100, 1e-9);
-  EXPECT_NEAR(s.flow().contact, 50, 1e-9);
   EXPECT_NEAR(kinetic_energy(s.cloth()), 50, 1e-9);
   EXPECT_NEAR(center_of_mass(s.cloth()).z, 1, 1e-12);
 }
@@ -200,41 +163,6 @@ TEST(Work, OfAnObstacleOnHeldNodesIsNone) {
     ASSERT_TRUE(s.run_to(0.2));
     EXPECT_NEAR(gain(s), -12 / 50., 1e-3) << dt;
   }
-}
-
-// A checkpoint has it, so it is the same for any number of threads.
-TEST(Flow, WhatContactTookHasTheSameBits) {
-  double first = 0;
-  for (int threads : {1, 2, 3}) {
-    Sweep::set_threads(threads);
-    Model m = sheet(70, "verlet", 5e-4);
-    m.gravity = grav,
-    m.planes = {{.at = Point(0, 0, -0.01), .friction = 0.3, .motion = {}}};
-    m.sheets[0].velocity = Point(1, 0.3, 0);
-    Scene s(m);
-    ASSERT_TRUE(s.run_to(0.15));
-    if (threads == 1) first = s.flow().contact;
-    EXPECT_GT(first, 0.01);
-    EXPECT_EQ(s.flow().contact, first) << threads;
-  }
-  Sweep::set_threads(0);
-}
-
-// Drag that takes most of a velocity in a step: that of a flight is exact, that
-// of a fall to a few percent.
-TEST(Work, OfStrongDragIsThatOfTheStep) {
-  for (double gravity : {0., grav})
-    for (double dt : {0.02, 0.1}) {
-      Model m = sheet(3, "verlet", dt);
-      m.sheets[0].velocity = Point(1, -0.5, 2);
-      m.gravity = gravity, m.damping = 1;  // gamma = 9/s
-      Scene s(m);
-      s.watch_energy(1);
-      ASSERT_TRUE(s.run_to(1));
-      EXPECT_LT(std::abs(s.energy_watch()->off()),
-                (gravity > 0 ? 0.05 : 1e-6) * s.flow().drag)
-          << gravity << ' ' << dt;
-    }
 }
 
 // A ball pushes: no energy comes from nothing, and none is left out.

@@ -225,7 +225,7 @@ TEST(Live, RestartsAsItWasMade) {
   live.apply(request("cut", id(live, 0), id(live, 1)));
   live.apply(request("pin", id(live, 7)));
   run(live, 50);
-  EXPECT_EQ(live.changes_left(), 0u);
+  EXPECT_EQ(live.scene().changes_left(), 0u);
   live.restart(m);
   EXPECT_EQ(positions(live.scene().cloth()), x);
   EXPECT_EQ(live.readings().torn_edges, 0u);

@@ -380,4 +380,14 @@ TEST(Measure, HasColumnsOfItsOwnAtTheEndOfATable) {
   }
 }
 
+// By K (l - L), which it does not use, the cloth of 0.2 kg would pull with 46
+// N.
+TEST(PinForce, OfXpbdIsThatOfItsMultipliers) {
+  Model m = scene_of("nodes 11 11", 4, 0.01);
+  m.pins = {read_pin("y 0")};
+  m.material.density = 0.2, m.material.modulus = 1e5, m.material.drag = 1;
+  m.method = find_method("xpbd");
+  EXPECT_NEAR(answer_of(m, "pin-force"), 0.2 * grav, 0.002 * grav);
+}
+
 }  // namespace

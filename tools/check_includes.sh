@@ -24,8 +24,8 @@ lab/try       : mass_spring
 lab/bench     : lab/fast
 lab/live      : lab/stepping
 lab/viewer    : lab/stepping
-lab/run       : lab/viewer lab/live
-lab/python    : lab/advice lab/live
+lab/run       : lab/viewer
+lab/python    : lab/advice
 lab/page      : lab/live
 '
 # Python, JavaScript, CSS and HTML reach another room by the name of its folder

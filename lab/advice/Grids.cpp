@@ -23,6 +23,11 @@ Question::Question(const Model& m, const AdviceRules& rules, double runs)
                                     "files");
   if (!(m.t_end > 0))
     throw SceneError("t-end", "is 0, expected a time to simulate");
+  for (const Change& c : read_changes(m.at))
+    if (c.name() != "gravity" && c.name() != "stiffness")
+      throw SceneError("at", "has " + std::string(c.name()) +
+                                 ", which is of one grid or one method: with "
+                                 "advice expected gravity or stiffness");
   own_work = work_of_run(m);
   if (!std::isfinite(own_work)) own_work = 0;
   pilots.allow(runs * own_work);

@@ -110,7 +110,6 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
             tell_(text, std::min(1.0, (before + work * scene.time() / m.t_end) /
                                           budget_));
         });
-    if (t.ok()) t.failure = t.gain;
   } catch (const SceneError& e) {
     is_impossible(e);
   } catch (const std::invalid_argument& e) {

@@ -57,29 +57,12 @@ void HoldingConstraint::project(Cloth& g, double t, unsigned first,
 }
 
 void SweptConstraint::archive(Archive& a) const {
-  auto& [work, moment, torn, none] = exchange_;
-  a(work)(moment)(torn)(taken_);
-  a.require(std::isfinite(work + moment + torn + exchange().taken));
-}
-
-void SweptConstraint::note_taken(double energy, unsigned first) const {
-  // Contact is rare, so one for all is enough. The page has no std::mutex.
-  static std::atomic_flag busy;
-  if (!(energy > 0)) return;
-  while (busy.test_and_set(std::memory_order_acquire)) {
-  }
-  const std::size_t tile = first / FlatCloth::tile;
-  if (tile >= taken_.size()) taken_.resize(tile + 1);
-  taken_[tile] += energy;
-  busy.clear(std::memory_order_release);
+  auto& [work, moment] = exchange_;
+  a(work)(moment);
+  a.require(std::isfinite(work + moment));
 }
 
 namespace {
-
-/** The kinetic energy of @a n [J]. */
-double energy_of(Node n) {
-  return 0.5 * n.value().mass * normSq(n.value().vel);
-}
 
 // The course's constraints as swept ones.
 
@@ -101,15 +84,9 @@ class Projecting final : public NodewiseConstraint {
   explicit Projecting(const C& c) : NodewiseConstraint(traits_of(c)), c_(c) {}
   void project(Cloth& g, double /*t*/, unsigned first,
                unsigned last) const override {
-    double taken = 0;
     for_each_violating(
         g, first, last, [this](const Point& p) { return violates(c_, p); },
-        [&](Node n) {
-          taken += energy_of(n);
-          c_.project(n);
-          taken -= energy_of(n);
-        });
-    note_taken(taken, first);
+        [this](Node n) { c_.project(n); });
   }
 
  private:
@@ -127,9 +104,6 @@ class Tear final : public SweptConstraint {
         [this](const Point& p) { return ball_.holds(p); },
         [&](Node n) {
           exchange_.moment += n.value().mass * n.position().z;
-          exchange_.torn += energy_of(n);
-          for (Edge e : n.edges())
-            exchange_.torn += spring_energy(e.length(), e.value());
           g.remove_node(n);
         });
   }
@@ -144,9 +118,8 @@ class Called final : public SweptConstraint {
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override {
     const auto version = arrays(g).version();
-    const double before = moment_of(g), kinetic = kinetic_energy(g);
+    const double before = moment_of(g);
     (*c_)(g, t);
-    note_taken(kinetic - kinetic_energy(g));
     if (arrays(g).version() != version)
       exchange_.moment += before - moment_of(g);
   }

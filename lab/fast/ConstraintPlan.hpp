@@ -45,12 +45,8 @@ using PlaceVisitor = std::function<void(Node, const Place&)>;
 struct Exchange {
   double work = 0;    ///< by moving obstacles: impulse times velocity [J]
   double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]
-  double torn = 0;    ///< kinetic and elastic energy of what was removed [J]
-  /** Kinetic energy, relative to the obstacle, that contact and friction took
-   * [J]. With that which each step gives to a node at rest on an obstacle. */
-  double taken = 0;
   Exchange& operator+=(const Exchange& b) {
-    work += b.work, moment += b.moment, torn += b.torn, taken += b.taken;
+    work += b.work, moment += b.moment;
     return *this;
   }
 };
@@ -97,11 +93,7 @@ class SweptConstraint : public ZeroConstraint {
   const Traits& traits() const { return traits_; }
   /** What its calls since it was made have exchanged, without the work on held
    * nodes, which EnergyBalance adds up. */
-  Exchange exchange() const {
-    Exchange all = exchange_;
-    for (double energy : taken_) all.taken += energy;
-    return all;
-  }
+  const Exchange& exchange() const { return exchange_; }
   void archive(Archive& a) const;
 
   /** Project the nodes of @a g with ids in [first, last) that are in use. The
@@ -117,15 +109,10 @@ class SweptConstraint : public ZeroConstraint {
                           const PlaceVisitor& /*use*/) const {}
 
  protected:
-  mutable Exchange exchange_;  // without taken
-  /** Contact took @a energy [J] of the part that begins with id @a first.
-   * Several threads may say so at once, each of other parts: the sum has the
-   * same bits for any number of threads. */
-  void note_taken(double energy, unsigned first = 0) const;
+  mutable Exchange exchange_;
 
  private:
   Traits traits_;
-  mutable std::vector<double> taken_;  // by tile of the first node
 };
 
 /** A constraint that projects each node independently: derived classes define

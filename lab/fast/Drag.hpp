@@ -60,36 +60,7 @@ class Drag {
     return sum;
   }
 
-  /** The energy [J] that it took from @a g in a time @a h [s], in which nodes
-   * came from places @a x with velocities @a v: that of the parabola through
-   * both velocities whose mean is the displacement over h. What it adds to the
-   * mean is scaled so that drag alone takes what it does.  O(N) */
-  double loss(const Cloth& g, const Point& wind, double h,
-              std::span<const Point> x, std::span<const NodeData> v) const {
-    double sum = 0;
-    for (Node n : g.nodes()) {
-      if (n.id() >= x.size()) continue;  // added since
-      const double c = (*this)[n.id()], y = c * h / n.value().mass;
-      const Point mean = (n.position() - x[n.id()]) / h,
-                  change = n.value().vel - v[n.id()].vel,
-                  bend = n.value().vel + v[n.id()].vel - 2 * mean;
-      sum += c * (dot(mean - wind, mean) +
-                  decay_share(y) * (normSq(change) / 12 + normSq(bend) / 20));
-    }
-    return sum * h;
-  }
-
  private:
-  /** Of v = exp(-y s) on [0, 1]: the variance of v, as a share of that of the
-   * parabola. */
-  static double decay_share(double y) {
-    if (y < 0.1) return 1;
-    const double end = std::exp(-y), mean = (1 - end) / y,
-                 bend = 1 + end - 2 * mean;
-    return ((1 - end * end) / (2 * y) - mean * mean) /
-           ((1 - end) * (1 - end) / 12 + bend * bend / 20);
-  }
-
   double same_;
   std::vector<double> by_id_;
 };

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/live/Line.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/KeyValues.hpp"
@@ -88,8 +87,7 @@ std::vector<std::array<unsigned, 2>> crossed_edges(
 
 // ----------------------------------------------------------------------- Live
 
-Live::Side::Side(std::unique_ptr<Scene> s, const MethodEntry& m)
-    : scene(std::move(s)), method(m) {
+Live::Side::Side(std::unique_ptr<Scene> s) : scene(std::move(s)) {
   scene->follow_drag();
   mark();
   sharp_limit = safe_limit;
@@ -100,42 +98,25 @@ void Live::Side::count() {
 }
 void Live::Side::mark() {
   count();
-  of_step = work_of_step(*scene, method, scene->dt());
+  changes_left = scene->changes_left();
+  of_step = work_of_step(*scene, method(), scene->dt());
   safe_limit = scene->safe_limit();
-  dt_unit = lab::dt_unit(*scene, method);
+  dt_unit = lab::dt_unit(*scene, method());
 }
 
 void Live::set_step(const MethodEntry& method, const TimeStep& step) {
   main_->scene->change_method(method, step);
-  main_->method = method;
   main_->mark();
   tune();
 }
 
-/** The step stays the same. */
-void Live::set_method(const MethodEntry& method) {
-  TimeStep step = scene().stepper().time_step();
-  if (step.fixed()) step.dt = main_->scene->dt();
-  try {
-    set_step(method, step);
-  } catch (const std::invalid_argument&) {  // it can't choose
-    step.dt = main_->scene->dt(), step.rule = StepRule::fixed;
-    set_step(method, step);
-  }
-}
-
-/** Use the forces of @a m. */
-void Live::change_forces(const Model& m) {
-  for (Side* side : sides()) side->scene->change_forces(m), side->mark();
-  fit_step();
+/** Fit steps to limits that may have changed. */
+void Live::fit_steps() {
+  const double before = main_->safe_limit;
+  for (Side* side : sides()) side->mark();
+  if (main_->safe_limit == before) return;
+  if (main_->runs()) main_->scene->fit_step(), main_->mark();
   tune();
-}
-
-/** Choose a chosen step anew if it is above the limit now. */
-void Live::fit_step() {
-  const TimeStep step = scene().stepper().time_step();
-  if (!step.fixed() && scene().dt() > main_->safe_limit && main_->runs())
-    set_step(main_->method, step);
 }
 
 std::vector<Live::Side*> Live::sides() {
@@ -146,7 +127,7 @@ std::vector<Live::Side*> Live::sides() {
 }
 Live::Side Live::copy(const MethodEntry& method) const {
   const TimeStep step{.dt = main_->scene->dt()};
-  return {std::make_unique<Scene>(*main_->scene, step, method), method};
+  return Side(std::make_unique<Scene>(*main_->scene, step, method));
 }
 
 /** Run copies of the present state beside it, in place of those that do. */
@@ -155,7 +136,7 @@ void Live::compare(const std::vector<Lane>& rivals) {
   rivals_.clear(), reference_.reset(), round_ = 1;
   if (rivals.empty()) return;
   if (const TimeStep& now = scene().stepper().time_step(); !now.fixed())
-    set_step(main_->method, {.dt = scene().dt(), .tolerance = now.tolerance});
+    set_step(main_->method(), {.dt = scene().dt(), .tolerance = now.tolerance});
   for (const Lane& r : rivals) {
     rivals_.push_back(copy(*r.method));
     rivals_.back().asked = r.share * rivals_.back().dt_unit;
@@ -168,7 +149,7 @@ void Live::compare(const std::vector<Lane>& rivals) {
 std::vector<Live::Lane> Live::at_equal_work(
     const std::vector<const MethodEntry*>& methods) const {
   const Scene& s = *main_->scene;
-  const double a_second = work_of_step(s, main_->method, s.dt()) / s.dt();
+  const double a_second = work_of_step(s, main_->method(), s.dt()) / s.dt();
   constexpr double longest = 1;  // [s]
   std::vector<Lane> all;
   for (const MethodEntry* method : methods) {
@@ -189,7 +170,7 @@ void Live::tune() {
   round_ = round_of(ratios);
   const double whole = round_ * dt;
   const auto set = [](Side& side, double step) {
-    side.scene->change_method(side.method, {.dt = step});
+    side.scene->change_method(side.method(), {.dt = step});
     side.mark();
   };
   for (Side& rival : rivals_)
@@ -200,7 +181,7 @@ void Live::tune() {
 
 RunReadings Live::Side::readings(bool sharp) {
   RunReadings r;
-  r.method = method.info.name;
+  r.method = method().info.name;
   r.dt = scene->dt(), r.dt_unit = dt_unit;
   if (sharp) sharp_limit = scene->stepper().sharp_limit();
   r.safe_limit = safe_limit, r.sharp_limit = sharp_limit;
@@ -212,44 +193,23 @@ RunReadings Live::Side::readings(bool sharp) {
   return r;
 }
 
-std::vector<Change> read_changes(const std::vector<std::string>& lines) {
-  std::vector<Change> all;
-  for (const std::string& line : lines) {
-    Line in(line);
-    const double time = in.number("a time [s]", 0.);
-    if (!all.empty() && time < all.back().time)
-      in.fail("comes after " + CME212::short_text(all.back().time) + " s");
-    all.push_back({time, std::string(in.rest())});
-    std::string error = in.error();
-    if (error.empty()) error = Live::error_in(all.back().request);
-    if (!error.empty()) throw SceneError("at", in_quotes(line) + ": " + error);
-  }
-  return all;
-}
-
 Live::Live(const Model& m) : Live(m, mesh_of(m)) {}
-Live::Live(const Model& m, Net mesh) : changes_(read_changes(m.at)) {
-  main_.emplace(std::make_unique<Scene>(m, std::move(mesh)), *m.method);
-  main_->scene->watch_energy(m.t_end);
+Live::Live(const Model& m, Net mesh) {
+  main_.emplace(std::make_unique<Scene>(m, std::move(mesh)));
+  main_->scene->watch(m.t_end);
   start_nodes_ = scene().cloth().num_nodes();
   start_edges_ = scene().cloth().num_edges();
 }
 
 void Live::restart(const Model& m) {
   rivals_.clear(), reference_.reset(), round_ = 1;
-  next_ = 0, calls_ = 0, recording_.clear();
+  calls_ = 0, recording_.clear();
   main_->scene->restart();
-  change_forces(m);
+  main_->scene->change_forces(m);
   set_step(*m.method, m.step);
 }
 
 bool Live::step() {
-  constexpr double round_off = 1e-9;  // of a step
-  const auto is_due = [this](const Change& c) {
-    return c.time <= scene().time() + round_off * scene().dt();
-  };
-  for (; changes_left() > 0 && is_due(changes_[next_]); ++next_)
-    make(changes_[next_].request);
   if (done()) return false;
   ++calls_;
   for (int k = 0; k < round_ && !done() && !interrupted(); ++k)
@@ -262,35 +222,8 @@ bool Live::step() {
       s.steps_at_once(Scene::guard_interval, time);
     s.check();
   }
+  if (main_->changes_left != scene().changes_left()) fit_steps();
   return !done();
-}
-
-Live::Limit Live::least_limit() const {
-  Limit least = {scene().safe_limit()};
-  if (changes_.empty()) return least;
-  Live ahead(model(), scene().mesh().mesh);
-  for (const Change& c : ahead.changes_) {
-    ahead.make(c.request);
-    if (const double limit = ahead.scene().safe_limit(); limit < least.limit)
-      least = {limit, c.time};
-  }
-  return least;
-}
-
-void Live::archive(Archive& a) {
-  std::string made;
-  for (std::size_t k = 0; k < next_; ++k) made += changes_[k].request + '\n';
-  a(made);
-  if (!a.loads()) return;
-  for (std::size_t at = 0, end; at < made.size(); at = end + 1, ++next_) {
-    end = made.find('\n', at);
-    const std::string request = made.substr(at, end - at);
-    if (next_ == changes_.size() || changes_[next_].request != request)
-      throw SceneError("at",
-                       "does not begin with the changes that were made "
-                       "until the checkpoint");
-    make(request);
-  }
 }
 
 bool Live::check() {

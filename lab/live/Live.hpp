@@ -2,10 +2,9 @@
 /** @file Live.hpp
  * Live: a scene that is changed while it runs. A change is a request, one line
  * of text: "gravity 3", "grab 17 0.5 0.5 0.2", "method verlet". The page sends
- * such lines; Model::at has them with a time [s] before each, "0.5 gravity 3".
- * A recording, as in the page's links, has the number of steps instead: it
- * repeats all bits, and steps that --dt auto takes back are made again at other
- * times. Requests.cpp lists all requests.
+ * such lines. A recording, as in the page's links, has the number of steps
+ * instead: it repeats all bits, and steps that --dt auto takes back are made
+ * again at other times. Requests.cpp lists all requests.
  *
  * A node is named by its number in the mesh, from 0, which stays the same when
  * others are removed. */
@@ -20,6 +19,7 @@
 #include <vector>
 
 #include "CME212/Util.hpp"
+#include "lab/scenes/Requests.hpp"
 #include "lab/stepping/Scene.hpp"
 
 namespace lab {
@@ -94,16 +94,6 @@ double dt_unit(const Scene& s, const MethodEntry& m);
 
 // ---- The scene
 
-/** A request that is made at some time. */
-struct Change {
-  double time;  ///< [s]
-  std::string request;
-};
-/** The changes in @a lines such as "0.5 gravity 3", in their order.
- * Throws SceneError: a line that makes no sense, or is earlier than the one
- * before it */
-std::vector<Change> read_changes(const std::vector<std::string>& lines);
-
 /** A scene that is changed while it runs. Its states depend only on the model
  * and on the requests, with the number of step() calls before each; what is
  * read or shown meanwhile does not change a bit.
@@ -111,8 +101,7 @@ std::vector<Change> read_changes(const std::vector<std::string>& lines);
  * One thread at a time. */
 class Live {
  public:
-  /** At t = 0. The changes of Model::at are made by the first step() from
-   * their times on.  Throws as Scene(model), and as read_changes() */
+  /** At t = 0.  Throws as Scene(model) */
   explicit Live(const Model& m);
   /** The same from @a mesh, as of a Scene. */
   Live(const Model& m, Net mesh);
@@ -137,7 +126,7 @@ class Live {
   /** The parameters of @a m that requests set: each one's name and value. */
   static std::vector<std::pair<std::string_view, double>> parameters(Model m);
 
-  /** Make the changes that are due, then one step; while comparing, one round:
+  /** One step; while comparing, one round:
    * the fewest steps after which all runs are at the same time. For that a
    * rival's step is the one asked for to 2 %; no scene takes more than 10^4
    * steps in a round. A signal cuts a round short.
@@ -149,24 +138,6 @@ class Live {
   bool done() const { return scene().done(model().t_end); }
   /** The number of step() calls so far that found it not done(). */
   long long calls() const { return calls_; }
-  /** The number of changes that are still to be made. */
-  std::size_t changes_left() const { return changes_.size() - next_; }
-  /** A stability limit [s], and the time of the change that brings it [s]. */
-  struct Limit {
-    double limit, since = 0;
-  };
-  /** The shortest limit of the run: Scene::safe_limit() now, and after each
-   * change of Model::at, made without a step.
-   * Complexity: a scene from the mesh; for each change, as safe_limit() */
-  Limit least_limit() const;
-  /** The first words of the changes that a checkpoint can hold. */
-  static constexpr std::array<std::string_view, 6> archived = {
-      "stiffness", "drag", "gravity", "cut", "unpin", "method"};
-  /** Save the changes that were made, or make them in a scene at t = 0, whose
-   * own archive comes next.  @pre all are archived
-   * Throws SceneError: the scene has other changes */
-  void archive(Archive& a);
-
   /** The model with all changes of forces: what sliders show. */
   const Model& model() const { return scene().model(); }
   const Scene& scene() const { return *main_->scene; }
@@ -195,17 +166,19 @@ class Live {
   std::string recording() const;
 
  private:
-  struct Table;  // of requests
   /** A scene, and what its readings need. */
   struct Side {
     std::unique_ptr<Scene> scene;
-    MethodEntry method;
     double dt_unit, safe_limit, sharp_limit;  // [s]; sharp: when last asked for
     double asked = 0;              // the step of a rival that was asked for [s]
     double work = 0, of_step = 0;  // until a step; of each one after it
     long long counted = 0;         // that step
+    std::size_t changes_left = 0;  // of the scene, when it was marked
 
-    Side(std::unique_ptr<Scene> s, const MethodEntry& m);
+    explicit Side(std::unique_ptr<Scene> s);
+    const MethodEntry& method() const {
+      return scene->stepper().method_entry();
+    }
     void mark();
     void count();
     bool runs() const { return !scene->failure(); }
@@ -216,8 +189,6 @@ class Live {
   std::vector<Side> rivals_;
   int round_ = 1;  // steps of the main scene in one
   unsigned start_nodes_ = 0, start_edges_ = 0;
-  std::vector<Change> changes_;
-  std::size_t next_ = 0;  // of changes_
   long long calls_ = 0;
   std::string recording_;
 
@@ -230,20 +201,14 @@ class Live {
     for (Side* side : sides())
       if (side->runs()) use(*side->scene);
   }
-  void make(const std::string& request);
-  /** The id of the node of this number, and the other way round. */
-  unsigned id_of(unsigned number) const {
-    const auto& ids = scene().mesh().ids;
-    return number < ids.size() ? ids[number] : unsigned(-1);
-  }
+  static const Requests<Live>& requests();
+  static Requests<Live> make_requests();
   unsigned number_of(unsigned id) const {
     const auto& ids = scene().mesh().ids;
     return unsigned(std::ranges::find(ids, id) - ids.begin());
   }
   void set_step(const MethodEntry& method, const TimeStep& step);
-  void set_method(const MethodEntry& method);
-  void change_forces(const Model& m);
-  void fit_step();
+  void fit_steps();
   void compare(const std::vector<Lane>& rivals);
   std::vector<Lane> at_equal_work(
       const std::vector<const MethodEntry*>& methods) const;

@@ -7,6 +7,7 @@
 #include <concepts>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -110,6 +111,9 @@ class Method {
    * is kept.  @pre of loading: @a g is as it was when saved */
   virtual void archive(Archive& /*a*/, const Cloth& /*g*/) {}
   virtual Work work() const { return {}; }
+  /** By edge id: the mean force of each spring in the last step on the first of
+   * its ends [N]. Empty: it was K (l - L) along the spring. */
+  virtual std::span<const Point> pulls() const { return {}; }
   /** Keep the estimated error of each inner step below @a tolerance [m] > 0;
    * infinite: one inner step a step. Only adaptive methods have one. */
   virtual void set_tolerance(double /*tolerance*/) {}

@@ -53,6 +53,7 @@ double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
   accelerate(g, t, force, springs);
   const double h = dt / substeps_;
   rounds_ += substeps_;
+  pulls_.assign(springs ? arrays(g).edge_slots() : 0, Point());
   const Drag& c = force.drag();
   auto x = arrays(g).positions();
   auto node = arrays(g).node_values();
@@ -89,7 +90,7 @@ void Xpbd::accelerate(Cloth& g, double t, const ForcePlan& force,
 }
 
 /** One round over the springs. */
-void Xpbd::pull_together(Cloth& g, double h) const {
+void Xpbd::pull_together(Cloth& g, double h) {
   auto x = arrays(g).positions();
   auto node = arrays(g).node_values();
   for (unsigned e = 0; e < arrays(g).edge_slots(); ++e) {
@@ -102,8 +103,10 @@ void Xpbd::pull_together(Cloth& g, double h) const {
     const double l = norm(u);
     if (l == 0 || wi + wj == 0 || spring.K == 0) continue;
     const double d = (l - spring.L) / (wi + wj + 1 / (spring.K * h * h));
-    x[i] += (wi * d / l) * u;
-    x[j] -= (wj * d / l) * u;
+    const Point way = (d / l) * u;
+    x[i] += wi * way;
+    x[j] -= wj * way;
+    pulls_[e] += 1 / (substeps_ * h * h) * way;
   }
 }
 

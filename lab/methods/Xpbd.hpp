@@ -3,6 +3,8 @@
  * Extended position-based dynamics: each spring in turn projects its two ends
  * towards its rest length. */
 #include <cassert>
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "lab/fast/FlatFlow.hpp"
@@ -51,6 +53,13 @@ class Xpbd : public Method {
   double step(Cloth& g, double t, double dt, const ForcePlan& force,
               const ConstraintPlan& constraint) override;
   Work work() const override { return {.inner = rounds_}; }
+  /** By the multipliers d: d/h^2 along n in each substep. It is not K (l - L):
+   * one round does not solve the equations. */
+  std::span<const Point> pulls() const override { return pulls_; }
+  void archive(Archive& a, const Cloth& /*g*/) override {
+    a(pulls_);
+    for (const Point& p : pulls_) a.require(std::isfinite(norm(p)));
+  }
 
  private:
   int substeps_;
@@ -59,9 +68,10 @@ class Xpbd : public Method {
   ForcePlan springs_ = MassSpringForce();  // recognised: may be temporary
   std::vector<char> fixed_;                // by node id, as all that follows
   std::vector<Point> free_, acceleration_;
+  std::vector<Point> pulls_;  // by edge id
 
   void accelerate(Cloth& g, double t, const ForcePlan& force, bool springs);
-  void pull_together(Cloth& g, double h) const;
+  void pull_together(Cloth& g, double h);
 };
 
 }  // namespace lab

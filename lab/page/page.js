@@ -166,7 +166,7 @@ function showLimits() {
   setText($('limits'), `dt = ${inMs(dt)}. ` + (safe === null
     ? `Without a limit: 1 is that of Verlet, ${inMs(unit)}.`
     : safe === 0 ? `No step is stable: 1 is Verlet's limit, ${inMs(unit)}.`
-      : `Stable in any shape up to ${inMs(safe)}` +
+      : `Small swings hold, in any shape, up to ${inMs(safe)}` +
         (sharp ? `, in this one up to ${inMs(sharp)}.` : '.')));
 }
 

@@ -16,13 +16,13 @@
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Lanes.hpp"
-#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/python/Arrays.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Changes.hpp"
 #include "lab/stepping/Settled.hpp"
 
 namespace lab {
@@ -99,10 +99,11 @@ std::optional<Why> why_failed(const Scene& s) {
     w.kind = kinds[int(f->kind)], w.cause = e.cause, w.text = e.text();
     w.step = f->step, w.time = f->time, w.dt = f->dt;
     if (f->place.index >= 0) w.node = f->place.index;
-  } else {  // as ./cloth ends: a chosen step has its own watch
-    const EnergyWatch& watch = *s.energy_watch();
-    if (s.control() || !watch.gains()) return std::nullopt;
-    w.kind = "energy", w.cause = watch.gain_text();
+  } else {  // as ./cloth ends
+    if (s.control() || !s.witness()) return std::nullopt;
+    const Verdict& verdict = s.witness()->verdict();
+    if (!verdict.wrong()) return std::nullopt;
+    w.kind = "energy", w.cause = verdict.wrong_text();
     w.text = w.cause + "; " + s.remedy();
     w.step = s.steps(), w.time = s.time(), w.dt = s.dt();
   }
@@ -156,7 +157,9 @@ class Simulation {
   const Net& mesh() const { return mesh_; }
 
   double limit(const std::string& method) const {
-    return start(TimeStep(), method_called(method)).safe_limit();
+    return Scene(model_, mesh_, TimeStep(), method_called(method))
+        .least_limit()
+        .limit;
   }
 
   Result run(const std::string& method, std::optional<double> t_end,
@@ -175,13 +178,8 @@ class Simulation {
       set_field(m, "dt", {dt});
     if (atol) m.step.tolerance = *atol;
     check_step(m);
-    std::optional<Live> live;
-    if (!m.at.empty()) live.emplace(m, mesh_);
-    const auto alone =
-        live ? nullptr
-             : std::make_unique<Scene>(model_, mesh_, m.step, *m.method);
-    Scene& scene = live ? live->scene() : *alone;
-    scene.watch_energy(m.t_end);
+    Scene scene(model_, mesh_, m.step, *m.method);
+    scene.watch(m.t_end);
     Result r;
     Settled<State> states(scene.stepper(), [&r](const State& s) { r.add(s); });
     states.add(State(scene));
@@ -194,7 +192,7 @@ class Simulation {
       const double left = std::ceil((next - scene.time()) / scene.dt() - 1e-6);
       const int most = int(std::clamp(std::min(left, at_once), 1.,
                                       double(Scene::guard_interval)));
-      live ? live->step() : scene.steps_at_once(most, m.t_end);
+      scene.steps_at_once(most, m.t_end);
       const bool due = scene.time() >= next - 1e-6 * scene.dt();
       if ((due || scene.done(m.t_end)) && scene.check())
         states.add(State(scene));
@@ -223,10 +221,6 @@ class Simulation {
   Model model_;
   Net mesh_;
   std::shared_ptr<Scene> at_hand_;  // of force()
-
-  Scene start(const TimeStep& step, const MethodEntry& method) const {
-    return Scene(model_, mesh_, step, method);
-  }
 };
 
 /** The net that arrays describe: mass_spring.pyi has their shapes.
@@ -285,7 +279,6 @@ std::string step_text(const py::object& dt) {
 Advice advise_on(const Simulation& s, std::optional<double> tolerance,
                  const std::string& method) {
   Model m = s.model();
-  if (!m.at.empty()) throw SceneError("at", "cannot be combined with advice");
   AdviceRules rules;
   if (tolerance) set_field(m, "tolerance", {CME212::exact_text(*tolerance)});
   if ((rules.keeps_method = !method.empty())) set_field(m, "method", {method});

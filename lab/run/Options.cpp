@@ -18,13 +18,13 @@
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "lab/fast/Lanes.hpp"
-#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/Nearest.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/stepping/Changes.hpp"
 #include "lab/stepping/Checkpoint.hpp"
 
 namespace lab {
@@ -149,22 +149,7 @@ void check(Options& o) {
                      "the scene of a checkpoint is fixed");
   if (!o.json.empty() && !o.asks_advice())
     throw SceneError("json", "needs --advise, --assess or --auto");
-  const auto changes = read_changes(o.model.at);
-  if (!changes.empty())
-    for (const auto& [option, given] : {std::pair("advise", o.asks_advice()),
-                                        std::pair("tolerance", o.bounds_error)})
-      if (given)
-        throw SceneError("at",
-                         std::string("cannot be combined with --") + option);
-  for (const Change& c : changes) {
-    const std::string word = c.request.substr(0, c.request.find(' '));
-    if (!(o.checkpoint + o.restart).empty() &&
-        !std::ranges::count(Live::archived, word))
-      throw SceneError("at", "has " + word +
-                                 ", which --checkpoint and --restart do not "
-                                 "keep: expected cut, drag, gravity, method, "
-                                 "stiffness or unpin");
-  }
+  read_changes(o.model.at);
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
         "window",

@@ -8,9 +8,9 @@
 #include <iomanip>
 #include <iostream>
 #include <sstream>
+#include <utility>
 
 #include "lab/fast/Energy.hpp"
-#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Acting.hpp"
 #include "lab/scenes/Interrupt.hpp"
@@ -22,10 +22,9 @@
 
 namespace lab {
 
-Run::Run(Scene& scene, const Options& o, Live* live)
+Run::Run(Scene& scene, const Options& o)
     : scene_(scene),
       o_(o),
-      live_(live),
       progress_(o.quiet),
       observer_(o.model, scene),
       frames_({{FrameFormat::vtp, o.vtp}, {FrameFormat::ply, o.ply}},
@@ -34,7 +33,7 @@ Run::Run(Scene& scene, const Options& o, Live* live)
             [this](const std::string& row) { write_csv(row), ++written_; }) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
     scene_.follow_drag();
-  scene_.watch_energy(o.model.t_end);
+  if (!o.bounds_error) scene_.watch(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
   if (const auto quads = quads_beside(o.out); !quads.empty())
     quads_.emplace(quads);
@@ -50,8 +49,8 @@ void Run::start() {
   progress_ = Progress(o_.quiet);
   observer_.restart(o_.model, scene_);
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
-  rows_.clear(), written_ = 0, kept_energy_.reset();
-  half_.reset(), halved_ = false;
+  rows_.clear(), written_ = 0;
+  judged_ = false, verdict_ = nullptr;
   frames_.restart();
   frames_.add(scene_);
   if (!o_.csv.empty()) begin_csv();
@@ -59,7 +58,7 @@ void Run::start() {
 }
 
 void Run::restart() {
-  live_ ? live_->restart(o_.model) : scene_.restart();
+  scene_.restart();
   told_ = false;
   start();
 }
@@ -70,12 +69,12 @@ bool Run::cut_short() const {
 }
 
 void Run::check() {
-  live_ ? live_->check() : scene_.check();
+  scene_.check();
   tell_failure();
 }
 
 void Run::advance(int most) {
-  live_ ? live_->step() : scene_.steps_at_once(most, o_.model.t_end);
+  scene_.steps_at_once(most, o_.model.t_end);
   look();
 }
 
@@ -128,9 +127,9 @@ void Run::announce() {
     std::cout << line << '\n';
   const std::string_view method = scene_.method().name;
   const double dt = scene_.dt();
-  const auto [limit, since] = live_ && !scene_.control()
-                                  ? live_->least_limit()
-                                  : Live::Limit{scene_.safe_limit()};
+  const auto [limit, since] = scene_.control()
+                                  ? Scene::Limit{scene_.safe_limit()}
+                                  : scene_.least_limit();
   const bool sharp = scene_.stepper().time_step().rule == StepRule::sharp;
   std::ostringstream out;
   out.precision(3);
@@ -165,7 +164,7 @@ void Run::announce() {
   std::cout << out.str() << std::endl;  // at once, also into a pipe
   if (first_step_ == 0)  // they are about the cloth as it was made
     for (const auto& w : warnings(o_.model, mesh, scene_.cloth(), dt)) warn(w);
-  if (const double work = scene_.flow().work; first_step_ == 0 && work != 0)
+  if (const double work = scene_.flow().work; first_step_ == 0 && work > 0)
     warn("at t = 0 the obstacles give " + CME212::short_text(work) +
          " J to the cloth, which counts as their work");
   if (scene_.method().multirate && limit <= scene_.safe_limit(table::verlet))
@@ -236,9 +235,12 @@ int Run::finish() {
     print_summary();
     tell_work();
     if (scene_.control()) tell_steps(*scene_.control());
-    if (!scene_.failure()) try_half(), tell_energy();
-    if (live_ && live_->changes_left() > 0)
-      warn(CME212::count_of(live_->changes_left(), "change") +
+    if (find_verdict())
+      std::cout << verdict_->text() << '\n';
+    else if (!scene_.failure() && !o_.bounds_error)
+      std::cout << "not compared with half of dt\n";
+    if (scene_.changes_left() > 0)
+      warn(CME212::count_of(scene_.changes_left(), "change") +
            " would come after the end");
   }
   if (scene_.failure() || !judge()) return 3;
@@ -275,7 +277,6 @@ void Run::archive(Archive& a) {
                                     asked);
   a(written_)(missed_).require(written_ >= 0);
   rows_.archive(a);
-  if (live_) live_->archive(a);
 }
 
 /** Write a checkpoint; before it the rows so far, so that these are there for
@@ -419,37 +420,17 @@ void Run::tell_work() const {
   std::cout << "work: " << text << '\n';
 }
 
-/** Compare with half of the step, if that is fast, dt is fixed, and the method
- * is one of ours: a step that was added may not run twice. */
-void Run::try_half() {
-  const auto is_it = [this](const MethodEntry& m) {
-    return m.info.name == scene_.method().name;
-  };
-  const double share = scene_.energy_watch()->is_off() ? 1 : 1 / 4.;
-  if (halved_ || o_.bounds_error || scene_.control() || interrupted() ||
-      scene_.method().adaptive || std::ranges::none_of(methods, is_it))
-    return;
-  halved_ = true;
+/** What half of the step shows.  @return false if it was not tried */
+bool Run::find_verdict() {
+  if (verdict_ || !scene_.witness() || scene_.failure() || interrupted())
+    return verdict_;
   try {
-    half_ = scene_.half_step(share * Scene::trial_work);
+    const bool asks = o_.model.measure.quantity != Measure::positions;
+    const Answer mine = asks ? answer() : Answer();
+    verdict_ = &scene_.witness()->verdict(asks ? &mine : nullptr);
   } catch (const Interrupted&) {  // it was not compared
   }
-}
-
-void Run::tell_energy() const {
-  const EnergyWatch& watch = *scene_.energy_watch();
-  if (watch.taken() > watch.torn())
-    std::cout << "contact and errors of the method changed the energy by "
-              << CME212::two_digits(watch.change()) << " J";
-  else
-    std::cout << watch.off_text();
-  if (watch.torn() > 0)
-    std::cout << "; tearing took " << CME212::two_digits(watch.torn()) << " J";
-  if (half_)
-    std::cout << "; " << half_->half_text();
-  else if (!o_.bounds_error)
-    std::cout << "; positions were not checked: half of dt shows their error";
-  std::cout << '\n';
+  return verdict_;
 }
 
 static std::string gain_text(const StepControl& c) {
@@ -459,33 +440,29 @@ static std::string gain_text(const StepControl& c) {
   return out.str();
 }
 
+/** Of steps that are chosen, StepControl tells what it tolerates: a warning is
+ * enough. */
+bool Run::wrong() const {
+  return verdict_ && verdict_->wrong() && !scene_.control();
+}
+
 bool Run::judge() {
-  if (kept_energy_) return *kept_energy_;
-  const EnergyWatch& watch = *scene_.energy_watch();
-  const auto& control = scene_.control();
-  const bool gains = !control && watch.gains();
-  if (gains || !o_.quiet) try_half();
-  const bool same = half_ && half_->is_close();
-  // Else the sums of work and drag err, not the motion.
-  kept_energy_ = !gains || (same && scene_.stepper().forgets());
-  if (!*kept_energy_) {
-    std::string text = watch.gain_text() + "; ";
-    try {
-      text += scene_.diagnosis().cause_text() + "; ";
-    } catch (const Interrupted&) {  // remedy() says so
+  if (find_verdict() && !std::exchange(judged_, true)) {
+    if (wrong()) {
+      std::string text = verdict_->wrong_text() + "; ";
+      try {
+        text += scene_.diagnosis().cause_text() + "; ";
+      } catch (const Interrupted&) {  // remedy() says so
+      }
+      warnings_.push_back(text + scene_.remedy());
+      std::cerr << "cloth: " << warnings_.back() << '\n';
+    } else if (!o_.quiet && !verdict_->fine()) {
+      warn((verdict_->wrong() ? verdict_->wrong_text()
+                              : verdict_->difference()) +
+           "; " + scene_.remedy());
     }
-    warnings_.push_back(text + scene_.remedy());
-    std::cerr << "cloth: " << warnings_.back() << '\n';
-  } else if (!o_.quiet) {
-    if (watch.is_off() && !(same && scene_.stepper().forgets()))
-      warn(watch.off_text() + ", which is an error of the method; " +
-           scene_.remedy());
-    else if (half_ && !same)
-      warn(half_->half_text() + "; " + scene_.remedy());
   }
-  if (!o_.quiet && control && control->state().gain > control->tolerance())
-    warn(gain_text(*control) + "; " + scene_.remedy());
-  return *kept_energy_;
+  return !wrong();
 }
 
 void Run::tell_steps(const StepControl& c) const {

@@ -17,7 +17,6 @@
 
 namespace lab {
 
-class Live;
 class Scene;
 class StepControl;
 
@@ -26,11 +25,10 @@ class Run {
  public:
   /** Output files are opened now, so that a wrong path ends the run before it
    * starts; a checkpoint is loaded into the scene. Keeps references.
-   * @param live if its scene is to be changed on the way; else null
    * @pre @a scene is at t = 0
    * Throws std::runtime_error; SceneError: the checkpoint is of another scene.
    */
-  Run(Scene& scene, const Options& o, Live* live = nullptr);
+  Run(Scene& scene, const Options& o);
 
   /** Back to t = 0. */
   void restart();
@@ -57,9 +55,8 @@ class Run {
   /** Print what acts, how long the step is, and how long it may be; warn of
    * what will go wrong, and of a run of hours. */
   void announce();
-  /** Once the run is done(): judge its energy, compare a short run with one of
-   * half of its step, and warn of what is wrong.
-   * @return false: the method has made more of it than is tolerated */
+  /** Once the run is done(): warn of what half of its step shows to be wrong.
+   * @return false: Verdict::wrong(), with a fixed step */
   bool judge();
   /** The warnings so far, without what is in --quiet runs. */
   const std::vector<std::string>& warned() const { return warnings_; }
@@ -77,7 +74,6 @@ class Run {
  private:
   Scene& scene_;
   const Options& o_;
-  Live* const live_;
   Progress progress_;
   Observer observer_;
   std::optional<CME212::OutputFile> csv_;
@@ -92,9 +88,8 @@ class Run {
   std::string kept_;            // in words
   double seconds_ = 0;          // until the last step
   bool missed_ = false, told_ = false;
-  std::optional<bool> kept_energy_;  // judge()
-  std::optional<Attempt> half_;      // of the step, if that was tried
-  bool halved_ = false;              // or it need not be tried
+  const Verdict* verdict_ = nullptr;  // of scene_.witness()
+  bool judged_ = false;
   std::vector<std::string> warnings_;
 
   int steps_to_write() const;
@@ -113,8 +108,8 @@ class Run {
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
-  void try_half();
-  void tell_energy() const;
+  bool find_verdict();
+  bool wrong() const;
   void tell_steps(const StepControl& c) const;
   void tell_work() const;
   void warn(const std::string& text);

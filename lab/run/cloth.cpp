@@ -31,7 +31,6 @@
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/live/Live.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
@@ -190,9 +189,7 @@ int run(Options o) {
   const bool in_window = shows && (o.window || Screen::has_display());
   std::optional<Accuracy> accuracy;
   if (o.bounds_error && o.restart.empty()) accuracy = measure_accuracy(o);
-  std::optional<Live> live;
-  std::optional<Scene> alone;
-  Scene& scene = m.at.empty() ? alone.emplace(m) : live.emplace(m).scene();
+  Scene scene(m);
   std::unique_ptr<Screen> window;
   if (in_window) {
     window = Screen::open(Screen::Kind::window);
@@ -205,7 +202,7 @@ int run(Options o) {
                    "go to the folder demo\n";
     check_outputs(o);
   }
-  Run run(scene, o, live ? &*live : nullptr);
+  Run run(scene, o);
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "
               << scene.cloth().num_edges() << " edges\n";

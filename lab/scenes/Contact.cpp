@@ -32,14 +32,12 @@ double touch(Node n, double depth, const Point& out, const Point& velocity,
 
 // ------------------------------------------------------------------ Touchable
 
-double Touchable::touch(Node n, double depth, const Point& out,
-                        const Point& velocity) const {
-  if (n.id() < held_.size() && held_[n.id()]) return 0;
-  const double before = normSq(n.value().vel - velocity);
+void Touchable::touch(Node n, double depth, const Point& out,
+                      const Point& velocity) const {
+  if (n.id() < held_.size() && held_[n.id()]) return;
   const double work = contact::touch(n, depth, out, velocity, friction_);
   if (!traits().nodewise)
     exchange_.work += work;  // else several threads may be here
-  return 0.5 * n.value().mass * (before - normSq(n.value().vel - velocity));
 }
 
 // ----------------------------------------------------------------------- Wall
@@ -57,13 +55,9 @@ void WallConstraint::project(Cloth& g, double t, unsigned first,
   const Motion& motion = traits().motion;
   const Point at = at_ + motion.way(t), velocity = motion.velocity_at(t);
   auto height = [&](const Point& p) { return dot(p - at, normal_); };
-  double taken = 0;
   for_each_violating(
       g, first, last, [&](const Point& p) { return height(p) < 0; },
-      [&](Node n) {
-        taken += touch(n, -height(n.position()), normal_, velocity);
-      });
-  note_taken(taken, first);
+      [&](Node n) { touch(n, -height(n.position()), normal_, velocity); });
 }
 
 // ----------------------------------------------------------------------- Ball
@@ -80,7 +74,6 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
   const Motion& motion = traits().motion;
   const Ball ball = {ball_.center + motion.way(t), ball_.radius};
   const Point velocity = motion.velocity_at(t);
-  double taken = 0;
   for_each_violating(
       g, first, last, [&](const Point& p) { return ball.holds(p); },
       [&](Node n) {
@@ -88,9 +81,8 @@ void BallConstraint::project(Cloth& g, double t, unsigned first,
         const double distance = norm(from_center);
         const Point out =
             distance > 0 ? from_center / distance : Point(0, 0, 1);
-        taken += touch(n, ball.radius - distance, out, velocity);
+        touch(n, ball.radius - distance, out, velocity);
       });
-  note_taken(taken, first);
 }
 
 // --------------------------------------------------------------------- Strain
@@ -102,8 +94,6 @@ void StrainConstraint::operator()(Cloth& g, double /*t*/) const {
     const double longest = most_ * arrays(g).edge_values()[e].L;
     // A slot that is not in use has the length 0.
     if (!(normSq(x[j] - x[i]) > longest * longest)) continue;
-    exchange_.torn +=
-        spring_energy(norm(x[j] - x[i]), arrays(g).edge_values()[e]);
     g.remove_edge(arrays(g).edge_with_id(e));
   }
 }

@@ -63,10 +63,9 @@ class Touchable : public NodewiseConstraint {
   void leave(std::vector<bool> held) { held_ = std::move(held); }
 
  protected:
-  /** contact::touch(), and count the work.
-   * @return the kinetic energy that it took, relative to the obstacle [J] */
-  double touch(Node n, double depth, const Point& out,
-               const Point& velocity) const;
+  /** contact::touch(), and count the work. */
+  void touch(Node n, double depth, const Point& out,
+             const Point& velocity) const;
 
  private:
   double friction_;

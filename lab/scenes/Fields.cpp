@@ -85,7 +85,7 @@ std::vector<Field> fields_of(Model& m) {
        "a time [s] and a change"},
       {"dt", Role::method, step, &m.step,
        "step [s]; the last steps may be shorter; auto: starts with 0.6 of the "
-       "stability limit that holds in every configuration, and is adapted to "
+       "limit of small oscillations in every configuration, and is adapted to "
        "the energy balance; auto:sharp: starts with 0.9 of the limit in the "
        "present configuration; auto:G, auto:sharp:G: tolerated gain of energy, "
        "as a share of the energy of motion (0.1)"},

@@ -187,6 +187,22 @@ Answer stretch_at(const Measured& now, const Measure& what) {
   return {most};
 }
 
+/** The force that acted on @a n [N].  O(its springs) */
+Point force_on(const Measured& now, Node n) {
+  Point f = (*now.force)(n, now.time);
+  for (Edge e : n.edges()) {
+    if (e.id() >= now.pulls.size()) continue;
+    const bool first =
+        e.node1().id() == arrays(now.cloth).edge_ends()[e.id()][0];
+    const Point u = e.node2().position() - e.node1().position();
+    const auto& [K, L] = e.value();
+    const double l = norm(u);
+    if (l > 0) f -= (K * (l - L) / l) * u;
+    f += (first ? 1 : -1) * now.pulls[e.id()];
+  }
+  return f;
+}
+
 /** The sum of all forces on the held nodes that @a what names [N], each node
  * once: what the pins carry, as held nodes do not accelerate.
  * O(springs at them) */
@@ -204,7 +220,7 @@ Answer pin_force(const Measured& now, const Measure& what) {
   Point sum;
   for (unsigned id : ids)
     if (arrays(g).node_in_use(id))
-      sum += (*now.force)(arrays(g).node_with_id(id), now.time);
+      sum += force_on(now, arrays(g).node_with_id(id));
   return {norm(sum)};
 }
 
@@ -281,8 +297,8 @@ Answer contact_force(const Measured& now, const Measure&) {
                   s.motion.velocity_at(now.time));
     }
     if (!touched.empty() && !is_held(n.id()))
-      sum += touched.carry((*now.force)(n, now.time), n.value().vel,
-                           plan.drag()[n.id()]);
+      sum +=
+          touched.carry(force_on(now, n), n.value().vel, plan.drag()[n.id()]);
   }
   return {norm(sum)};
 }

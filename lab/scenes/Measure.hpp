@@ -3,6 +3,7 @@
  * The answer to the question about a scene, as numbers that can be compared
  * between grids. */
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct Measured {
   const std::vector<HeldNodes>* held = nullptr;
   const CombinedForces* force = nullptr;
   double lost = 0;  ///< energy lost until then [J]
+  /** By edge id, of a method that does not use K (l - L): the force of each
+   * spring on its first end [N]. */
+  std::span<const Point> pulls = {};
 };
 
 /** A row of the table of quantities, which measures, CSV files and messages

@@ -29,8 +29,8 @@ struct SceneError : std::runtime_error {
 /** How the step is chosen. */
 enum class StepRule {
   fixed,  ///< the scene gives dt
-  safe,   ///< StepControl chooses it, starting at safe_share of the stability
-          ///< limit that holds in every configuration
+  safe,   ///< StepControl chooses it, starting at safe_share of the limit of
+          ///< small oscillations in every configuration
   sharp,  ///< the same, starting at sharp_share of the limit in the present
           ///< configuration, but not above the limit in all configurations
 };

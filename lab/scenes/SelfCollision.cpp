@@ -132,7 +132,6 @@ void SelfCollision::push_apart(Cloth& g, unsigned i, unsigned j) const {
   const Point way = ((1 + margin) * thickness_ - distance) * out;
   const Point u = node[i].vel - node[j].vel;
   const Point kick = contact::kick(u, out, friction_);
-  note_taken((normSq(u) - normSq(u + kick)) / (2 * (wi + wj)));
   const double part_i = wi / (wi + wj), part_j = wj / (wi + wj);
   x[i] += part_i * way;
   x[j] -= part_j * way;

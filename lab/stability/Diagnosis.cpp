@@ -86,14 +86,6 @@ std::string Cure::options(const MethodEntry& before) const {
              : "--method " + std::string(method.info.name) + ' ' + step;
 }
 
-std::string Attempt::half_text() const {
-  const std::string energy = passed ? "" : "another energy and ";
-  if (apart == no_limit)
-    return "half of dt gives " + energy + "other nodes that are removed";
-  return "half of dt gives " + energy + "positions that differ by up to " +
-         CME212::percent(apart) + " of the size of the cloth";
-}
-
 bool is_flat(const Cloth& g) {
   const auto nodes = g.nodes();
   if (g.num_nodes() == 0) return false;
@@ -226,7 +218,9 @@ std::string Diagnosis::remedy_text() const {
     if (trial.time >= run.time) {
       out << " works: a trial to t = " << trial.time
           << " s passed, and half of that step gives the same energy";
-      if (trial.apart == no_limit)
+      if (!run.asked.empty())
+        out << " and " << run.asked;
+      else if (trial.apart == no_limit)
         out << ", but other nodes are removed";
       else if (trial.apart > Attempt::same_place)
         out << ", but positions that differ by up to "
@@ -345,23 +339,11 @@ Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
         (d.cure && tried(*d.cure)))
       continue;
     const Attempt trial = try_out(cure);
-    if (!trial.passed)
+    if (!trial.passed || trial.is_no_better(run))
       d.failed.push_back(cure);
     else if (!d.cure || trial.time > d.trial.time)
       d.cure = cure, d.trial = trial;
     if (d.cure && d.trial.time >= run.time) break;
-  }
-  if (!d.cure || d.trial.time < run.time) return d;
-  const Cure first = *d.cure;
-  for (int shorter : {4, 16}) {
-    if (d.trial.apart <= Attempt::same_place) break;
-    const Cure cure = {first.method, in_three_digits(first.dt / shorter)};
-    const Attempt trial = try_out(cure);
-    // In chaotic motion a shorter step does not help.
-    if (!trial.passed || trial.time < run.time ||
-        trial.apart > d.trial.apart / 2)
-      break;
-    d.cure = cure, d.trial = trial;
   }
   return d;
 }

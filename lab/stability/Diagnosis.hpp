@@ -79,7 +79,9 @@ struct FailedRun {
   double safe_without_drag = 0;  ///< [s]
   double verlet = 0;             ///< Verlet's safe limit [s]
   bool flat = false;             ///< the last good state is: is_flat()
-  bool rigid = false;            ///< EnergyWatch::gains_beside_springs()
+  bool rigid = false;      ///< it gained more energy than its springs ever had
+  std::string asked = {};  ///< the answer that is wrong; "": none is
+  double apart = 0;        ///< Attempt::apart, if it is that alone; else 0
 };
 
 /** Do all nodes lie in a plane, to 1e-9 of the size of the cloth?  O(N) */
@@ -100,11 +102,14 @@ struct Attempt {
   /** Then, of a node from that with half the step, at most, by the size of the
    * cloth. */
   double apart = 0;
-  static constexpr double same_place = 0.01;  ///< apart, of equal positions
-  /** Half of the step changes less than a run is warned of. */
-  bool is_close() const { return passed && apart <= 4 * same_place; }
-  /** What half of the step changes, in words. */
-  std::string half_text() const;
+  double answer = 0;  ///< what half the step changes of it, as a share
+  static constexpr double same_place = 0.01;   ///< apart, of equal positions
+  static constexpr double same_answer = 0.05;  ///< answer, of equal ones
+  /** An error of @a run besides that of its energy is left. */
+  bool is_no_better(const FailedRun& run) const {
+    return (!run.asked.empty() && answer > same_answer) ||
+           (run.apart > 0 && apart > run.apart / 2);
+  }
 };
 using TryOut = std::function<Attempt(const Cure&)>;
 
@@ -121,10 +126,10 @@ struct Diagnosis {
 };
 
 /** Find out why @a run failed, and a cure. Tries shorter steps and other
- * methods, the most promising first, until a trial passes the time of the
- * failure or 10 trials have failed. If half of that step gives other positions,
- * a quarter and a sixteenth of it are tried, too, and taken if they at least
- * halve that difference. Every cure that it returns has passed. */
+ * methods, the cheapest that can hold first, until a trial passes the time of
+ * the failure or 10 trials have failed. Every cure that it returns has passed:
+ * its energy is that of half of its step, and so is the answer, if that was
+ * wrong; if only positions were, it halves their difference. */
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
 
 /** A message about a failure: its sentences in their order. */

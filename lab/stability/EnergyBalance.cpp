@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "lab/fast/Energy.hpp"
@@ -49,8 +48,6 @@ void EnergyBalance::follow(const Cloth& g, double t,
   const Exchange now = constraint.exchange();
   flow_.work += now.work - seen_.work;
   flow_.removed += gravity_ * (now.moment - seen_.moment);
-  flow_.torn += now.torn - seen_.torn;
-  flow_.contact += now.taken - seen_.taken;
   seen_ = now;
   const double step = t - time_;
   const bool same = std::abs(step - step_) < 1e-9 * step;
@@ -104,81 +101,6 @@ void EnergyBalance::find_carrier(const Cloth& g, double t,
       g, t, [&](Node, const Place& place) { sum += place.velocity, ++count; });
   flow_.loose = count == 0;
   flow_.carried = count > 0 ? sum / count : Point();
-}
-
-// ---------------------------------------------------------------------- Watch
-
-EnergyWatch::EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
-                         double floor, double round_off, bool ahead)
-    : dt_(dt),
-      floor_(floor),
-      round_off_(round_off),
-      ahead_(ahead),
-      seen_(e, flow, dt),
-      start_(seen_.last),
-      contact_(flow.contact) {}
-
-void EnergyWatch::look(const Energies& e, const EnergyFlow& flow) {
-  const double b = balance(e, flow) + flow.torn;
-  torn_ = flow.torn;
-  constexpr double impact = 1.1;  // in its step nodes are moved, too
-  taken_ += std::max(
-      0., std::min(seen_.last - b, impact * (flow.contact - contact_)));
-  contact_ = flow.contact;
-  seen_.measure(e, dt_);
-  seen_.add(b);
-  passed_ = std::max(passed_, std::abs(flow.work) + std::abs(flow.drag));
-  round_off_ = std::max(round_off_, e.round_off());
-  kinetic_ = std::max(kinetic_, e.kinetic);
-  ++looks_;
-}
-
-double EnergyWatch::share() const {
-  const bool counts = seen_.scale > passed_ &&
-                      std::abs(off()) > seen_.fall + floor_ + round_off_;
-  return counts ? off() / seen_.scale : 0;
-}
-
-/** Tolerated in addition [J]: round-off; 2 % of drag and work. Where velocities
- * are one step ahead of positions, fall() and, after n looks, one of n of the
- * largest internal energy: n steps after the start from rest, the kinetic
- * energy is by that share too large. */
-double EnergyWatch::slack() const {
-  const double early = ahead_ ? fall() + seen_.scale / std::max(looks_, 1) : 0;
-  return round_off_ + 0.02 * passed_ + early;
-}
-
-double EnergyWatch::tolerance() const {
-  return energy_tolerance * seen_.scale + slack() + lift();
-}
-
-bool EnergyWatch::is_off() const {
-  const double most = energy_tolerance / 2 * seen_.scale + slack();
-  return off() > most + lift() || -off() > most + fall();
-}
-
-std::string EnergyWatch::off_text() const {
-  std::ostringstream out;
-  out.precision(3);
-  out << "energy off by " << off() << " J";
-  if (share() != 0)
-    out << " (" << CME212::percent(share())
-        << " of the largest internal energy)";
-  return out.str();
-}
-
-std::string EnergyWatch::gain_text() const {
-  return "an error of the method has added " + CME212::two_digits(gain()) +
-         " J of energy, more than the " + CME212::two_digits(tolerance()) +
-         " J that --dt auto tolerates: this is not the motion of the scene";
-}
-
-void EnergyWatch::archive(Archive& a) {
-  a(seen_)(start_)(round_off_)(taken_)(torn_)(passed_)(kinetic_)(contact_);
-  a(looks_);
-  a.require(std::isfinite(start_ + round_off_ + taken_ + torn_ + passed_ +
-                          kinetic_ + contact_) &&
-            looks_ >= 0);
 }
 
 }  // namespace lab

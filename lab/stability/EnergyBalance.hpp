@@ -29,17 +29,14 @@ struct Energies {
 struct EnergyFlow {
   double work = 0;          ///< done by moving pins and obstacles
   double removed = 0;       ///< gravitational energy of removed nodes
-  double torn = 0;          ///< other energy of what was removed
   double drag = 0;          ///< taken by linear drag, if add_drag() is used
   Point carried = Point();  ///< mean velocity of the held nodes [m/s]
   /** No node is held. */
   bool loose = false;
-  double contact = 0;  ///< at most what contact took: Exchange::taken
 
   void archive(Archive& a) {
-    a(work)(removed)(torn)(drag)(carried)(loose)(contact);
-    a.require(
-        std::isfinite(work + removed + torn + drag + contact + norm(carried)));
+    a(work)(removed)(drag)(carried)(loose);
+    a.require(std::isfinite(work + removed + drag + norm(carried)));
   }
 };
 
@@ -95,9 +92,9 @@ class EnergyBalance {
       a.require(std::isfinite(norm(h.place) + norm(h.velocity) + norm(h.force) +
                               norm(h.change)));
     }
-    auto& [work, moment, torn, taken] = seen_;
-    a(work)(moment)(torn)(taken)(flow_)(time_)(step_);
-    a.require(std::isfinite(work + moment + torn + taken + time_ + step_));
+    auto& [work, moment] = seen_;
+    a(work)(moment)(flow_)(time_)(step_);
+    a.require(std::isfinite(work + moment + time_ + step_));
   }
 
  private:
@@ -117,124 +114,6 @@ class EnergyBalance {
   EnergyFlow flow_;
 
   void find_carrier(const Cloth& g, double t, const ConstraintPlan& constraint);
-};
-
-/** The balance b of a run until now [J].
- *
- * With a symplectic method the energy of an oscillation swings by a share of
- * O((dt omega)^2). So gains are measured from the least of the initial b and of
- * the means of all rounds of 8 looks. */
-struct Swings {
-  static constexpr int round = 8;  ///< looks
-
-  double scale = 0;            ///< largest internal energy
-  double fall = 0;             ///< gravity's work in two steps, if loose
-  double last = 0, least = 0;  ///< b: now, and its least mean over a round
-  double sum = 0;              ///< of b over this round
-  double gain = 0;             ///< largest b - least
-  int looks = 0;               ///< in this round
-
-  Swings() = default;
-  /** @param dt the step [s] */
-  Swings(const Energies& e, const EnergyFlow& flow, double dt)
-      : scale(e.internal()), fall(2 * e.fall_power * dt) {
-    last = least = balance(e, flow);
-  }
-  /** Compare with the largest energies so far. */
-  void measure(const Energies& e, double dt) {
-    scale = std::max(scale, e.internal());
-    fall = std::max(fall, 2 * e.fall_power * dt);
-  }
-  /** Take @a b into account.  @return true at the end of a round */
-  bool add(double b) {
-    last = b, sum += b;
-    gain = std::max(gain, last - least);
-    if (++looks < round) return false;
-    least = std::min(least, sum / round);
-    looks = 0, sum = 0;
-    return true;
-  }
-  void archive(Archive& a) {
-    a(scale)(fall)(last)(least)(sum)(gain)(looks);
-    a.require(std::isfinite(scale + fall + last + least + sum + gain) &&
-              0 <= looks && looks < round);
-  }
-};
-
-/** Follows the balance of a run, plus what was torn: its error is the method's.
- * A gain never has another cause; a loss may be that of contact. What is lost
- * between two looks counts as its, up to the kinetic energy that it took. */
-class EnergyWatch {
- public:
-  /** @param e, flow at the start   @param dt the step [s]
-   * @param floor, round_off of the DivergenceGuard [J]
-   * @param ahead MethodInfo::ahead() */
-  EnergyWatch(const Energies& e, const EnergyFlow& flow, double dt,
-              double floor, double round_off, bool ahead);
-
-  /** From now on the step is @a dt; another method may be @a ahead, too. */
-  void change_step(double dt, bool ahead) { dt_ = dt, ahead_ |= ahead; }
-  /** Forces or nodes have changed, as at a start: see slack(). */
-  void change_system() { looks_ = 0; }
-  /** Take the state after some steps into account. */
-  void look(const Energies& e, const EnergyFlow& flow);
-
-  /** The change of b [J]: by errors of the method, and by contact. */
-  double change() const { return seen_.last - start_; }
-  /** The error of the energy now [J], positive if gained; where contact took
-   * energy, an upper bound. */
-  double off() const { return change() + taken_; }
-  /** At most what contact took, and what tearing took [J]. */
-  double taken() const { return taken_ + torn_; }
-  /** The largest internal or kinetic energy [J]. */
-  double largest() const { return std::max(seen_.scale, kinetic_); }
-  /** What tearing took [J]. */
-  double torn() const { return torn_; }
-  /** off() as a share of the largest internal energy; 0 if that is negligible,
-   * as in a free fall, or beside work and drag. */
-  double share() const;
-  /** The largest gain so far [J]. */
-  double gain() const { return seen_.gain; }
-  /** The gain that is tolerated [J]: the share of the largest internal energy
-   * that StepControl tolerates, slack(), lift(). */
-  double tolerance() const;
-  /** The part of tolerance() besides that share [J]. */
-  double slack() const;
-  /** The method has added more energy than is tolerated. */
-  bool gains() const { return gain() > tolerance(); }
-  /** The gain is more than springs and their waves ever had: it is in the
-   * motion of the whole. */
-  bool gains_beside_springs() const { return gain() > seen_.scale; }
-  /** off() in words. */
-  std::string off_text() const;
-  /** gains() in words. */
-  std::string gain_text() const;
-  /** The energy is off by more than half of that share, slack(); of a gain,
-   * lift(); of a loss, fall(): positions may be ahead. */
-  bool is_off() const;
-
-  void archive(Archive& a);
-
- private:
-  double dt_, floor_, round_off_;
-  bool ahead_;
-  Swings seen_;
-  double start_;  // the first b [J]
-  double taken_ = 0, torn_ = 0;
-  double passed_ = 0;   // the most work and drag [J]
-  double kinetic_ = 0;  // the most kinetic energy [J]
-  double contact_ = 0;  // flow.contact at the last look
-  int looks_ = 0;
-
-  /** Gravity's work in two steps, if the cloth is loose [J]. Unless that is how
-   * the method is, it is not small beyond a twentieth of the kinetic energy. */
-  double fall() const {
-    return ahead_ ? seen_.fall
-                  : std::min(seen_.fall, energy_tolerance / 2 * kinetic_);
-  }
-  /** A cloth at rest on an obstacle, which each step lifts back, has less than
-   * this kinetic energy [J]: M (g dt)^2/8, or M (g dt)^2/2 where ahead. */
-  double lift() const { return contact_ > 0 ? floor_ / (ahead_ ? 1 : 4) : 0; }
 };
 
 }  // namespace lab

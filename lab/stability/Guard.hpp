@@ -1,6 +1,7 @@
 #pragma once
 /** @file Guard.hpp
  * DivergenceGuard: stops a run that gains energy from nothing. */
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -30,7 +31,7 @@ class NodeStates {
   std::vector<NodeData> value_;
 };
 
-/** Checks the energy of a run and keeps the last good state.
+/** A cheap alarm: checks the energy of a run and keeps the last good state.
  *
  * The energy of a cloth is the initial one, the work of gravity, and the work
  * of moving pins and obstacles. So a state is good if its energy is finite, and
@@ -65,6 +66,12 @@ class DivergenceGuard {
   bool accept(const Cloth& g, const Energies& e, const EnergyFlow& flow);
   /** Keep the state of @a g, good or not.  O(N) */
   void keep(const Cloth& g) { kept_.keep(g); }
+  /** The state of @a g has this internal energy [J] for a good reason: then
+   * it is available.  O(N) */
+  void allow(const Cloth& g, double internal) {
+    available_ = std::max(available_, internal);
+    keep(g);
+  }
 
   /** A negligible energy [J]: that of a free fall during one step, and of
    * springs strained by round-off. */

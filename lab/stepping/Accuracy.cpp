@@ -64,7 +64,8 @@ Accuracy find_accuracy(
   double TimeStep::*const knob =
       adaptive ? &TimeStep::tolerance : &TimeStep::dt;  // errors fall with it
   if (!adaptive)
-    coarse.step = {.dt = std::min(safe_share * Scene(m).safe_limit(), m.t_end)};
+    coarse.step = {
+        .dt = std::min(safe_share * Scene(m).least_limit().limit, m.t_end)};
   const double smallest = adaptive ? least * finer : coarse.step.dt / 1024;
   Accuracy best = {asked, coarse.step, m.t_end, -1, 0, 0, false, {}};
   std::optional<Pilot> a;

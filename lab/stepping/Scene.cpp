@@ -1,21 +1,24 @@
 #include "lab/stepping/Scene.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "CME212/Util.hpp"
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/methods/Methods.hpp"
 #include "lab/scenes/Interrupt.hpp"
 
 namespace lab {
 
 SceneParts::SceneParts(const Model& m, Net mesh)
-    : model_(m), mesh_{std::move(mesh), {}} {
+    : made_of_(m), model_(m), mesh_{std::move(mesh), {}} {
   build();
 }
 SceneParts::SceneParts(const SceneParts& other)
-    : model_(other.model_),
+    : made_of_(other.made_of_),
+      model_(other.model_),
       mesh_(other.mesh_),
       built_(other.built_),
       held_(other.held_) {
@@ -27,14 +30,28 @@ Scene::Scene(const Model& m, Net mesh)
     : Scene(m, std::move(mesh), m.step, *m.method) {}
 Scene::Scene(const Model& m, Net mesh, const TimeStep& step,
              const MethodEntry& method)
-    : SceneParts(m, std::move(mesh)), Stepper(built_, step, method) {}
+    : SceneParts(m, std::move(mesh)),
+      Stepper(built_, step, method),
+      first_(method),
+      changes_(read_changes(m.at)) {
+  confirm_by([this](const Energies& e) { return confirms(e); });
+  await_change();
+}
 
 Scene::Scene(const Scene& other, const TimeStep& step,
              const MethodEntry& method)
     : SceneParts(other),
       Stepper(built_, step, method, other.time()),
+      first_(method),
+      changes_(other.changes_.begin() + std::ptrdiff_t(other.made_),
+               other.changes_.end()),
       changed_(true) {
+  if (method.info.name != other.method().name)
+    std::erase_if(changes_,
+                  [](const Change& c) { return c.name() == "method"; });
   if (other.follows_drag()) follow_drag();
+  confirm_by([this](const Energies& e) { return confirms(e); });
+  await_change();
 }
 
 /** Build the system as it starts. */
@@ -51,6 +68,9 @@ void SceneParts::build() {
   built_.overlaps = false;
   for (Node n : g.nodes())
     built_.overlaps |= model_.starts_inside(n.position());
+  if (const auto& most = model_.tear_strain)
+    for (Edge e : g.edges())
+      built_.overlaps |= e.length() > (1 + *most) * e.value().L;
 }
 
 void SceneParts::take_forces(CombinedForces acting) {
@@ -65,9 +85,14 @@ void SceneParts::hold() {
 }
 
 void Scene::restart() {
-  changed_ = false, diagnosis_.reset();
+  changed_ = false, diagnosis_.reset(), made_ = 0;
+  if (first_.info.name != method().name)
+    Stepper::change_method(first_, time_step());
+  model_ = made_of_;
   build();
   Stepper::restart();
+  await_change();
+  if (witness_) witness_->restart();
 }
 
 // ------------------------------------------------------------------- Changes
@@ -75,19 +100,95 @@ void Scene::restart() {
 template <typename Change>
 void Scene::edit(Change change) {
   Stepper::edit(change);
-  changed_ = true, diagnosis_.reset();
+  note_change(true);
 }
 
 void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
   Stepper::change_method(method, step);
-  changed_ = true, diagnosis_.reset();
+  if (!makes_) first_ = method;
+  note_change(steps() > 0);
+}
+
+void Scene::take_method(const MethodEntry& method) {
+  TimeStep step = time_step();
+  if (step.fixed()) step.dt = dt();
+  try {
+    change_method(method, step);
+  } catch (const std::invalid_argument&) {  // it can't choose
+    step.dt = dt(), step.rule = StepRule::fixed;
+    change_method(method, step);
+  }
+}
+
+void Scene::fit_step() {
+  if (!time_step().fixed() && dt() > safe_limit())
+    change_method(method_entry(), time_step());
+}
+
+/** @param by_hand it is a change that no finer run makes by itself */
+void Scene::note_change(bool by_hand) {
+  if (makes_) return;
+  changed_ |= by_hand;
+  diagnosis_.reset();
+  if (witness_) witness_->change();
+}
+
+/** Let the next change of Model::at come when it is due. */
+void Scene::await_change() {
+  at(changes_left() > 0 ? changes_[made_].time : no_limit,
+     [this] { make_change(); });
+}
+
+void Scene::make_change() {
+  makes_ = true;
+  Line words(changes_[made_++].request);
+  scene_requests().find(words)->run(words, this);
+  fit_step();
+  makes_ = false;
+  await_change();
+}
+
+Scene::Limit Scene::least_limit() const {
+  Limit least = {safe_limit()};
+  if (changes_.empty()) return least;
+  Scene ahead(made_of_, mesh_.mesh, time_step(), first_);
+  while (ahead.changes_left() > 0) {
+    const double since = ahead.changes_[ahead.made_].time;
+    ahead.make_change();
+    if (const double limit = ahead.safe_limit(); limit < least.limit)
+      least = {limit, since};
+  }
+  return least;
+}
+
+void Scene::archive(Archive& a) {
+  std::string made;
+  for (std::size_t k = 0; k < made_; ++k) made += changes_[k].request + '\n';
+  a(made);
+  if (a.loads()) {
+    std::string before;
+    while (before.size() < made.size() && changes_left() > 0) {
+      before += changes_[made_].request + '\n';
+      if (made.starts_with(before)) make_change();
+    }
+    if (before != made)
+      throw SceneError("at",
+                       "does not begin with the changes that were made "
+                       "until the checkpoint");
+  }
+  for (HeldNodes& h : held_)
+    for (auto& [id, place] : h.nodes) a(place);
+  if (a.loads() && made_ > 0) Stepper::edit([this] { hold(); });
+  Stepper::archive(a);
+  Witness::archive(a, witness_.get());
 }
 
 void Scene::change_forces(const Model& m) {
   Cloth fresh;  // has the ids that this cloth had when it was built
   build_model(fresh, m, mesh_.mesh);
   CombinedForces acting = force_of(m, mesh_.mesh, fresh);
-  edit([&] {
+  if (!makes_) made_of_ = m;
+  Stepper::edit([&] {
     model_ = m;
     take_forces(std::move(acting));
     for (Edge e : cloth().edges())
@@ -95,6 +196,7 @@ void Scene::change_forces(const Model& m) {
     forget_limits();
     make_method();
   });
+  note_change(steps() > 0);
 }
 
 namespace {
@@ -170,6 +272,7 @@ void Scene::release() { pull(std::nullopt); }
 void Scene::pull(std::optional<HandForce> hand) {
   set_hand(std::move(hand));
   changed_ = true;
+  if (witness_) witness_->change();
 }
 
 // ------------------------------------------------------------------- Failure
@@ -204,13 +307,67 @@ std::string Scene::remedy() const {
   }
 }
 
+void Scene::watch(double t_end, bool whole) {
+  const auto is_it = [this](const MethodEntry& m) {
+    return m.info.name == method().name;
+  };
+  if (std::ranges::any_of(methods, is_it))
+    witness_ = std::make_unique<Witness>(*this, t_end, whole);
+}
+
+/** @a share of the present step; of steps that are chosen, of the mean one. */
+TimeStep Scene::finer_step(double share) const {
+  constexpr double usual = 1e-6, stricter = 16;  // RungeKutta
+  TimeStep step = {.dt = share * dt()};
+  if (control() && steps() > 0)
+    step.dt = share * std::min(dt(), time() / double(steps()));
+  if (const double t = time_step().tolerance; method().adaptive)
+    step.tolerance = (t > 0 ? t : usual) / (share < 1 ? stricter : 1);
+  return step;
+}
+
+std::unique_ptr<Scene> Scene::finer() const {
+  if (changed_) return branch(0.5);
+  auto finer =
+      std::make_unique<Scene>(made_of_, mesh_.mesh, finer_step(0.5), first_);
+  finer->confirm_by([](const Energies&) { return true; });
+  return finer;
+}
+
+std::unique_ptr<Scene> Scene::branch(double share) const {
+  auto branch =
+      std::make_unique<Scene>(*this, finer_step(share), method_entry());
+  branch->confirm_by([](const Energies&) { return true; });
+  return branch;
+}
+
+/** Has a finer run this energy now, too, to 10 %? It begins in an earlier
+ * state.
+ */
+bool Scene::confirms(const Energies& e) const {
+  constexpr double same = 1.1;
+  const Scene* kept = witness_ ? witness_->kept() : nullptr;
+  const double cost = 2 * double(steps()) * evaluations_of(method()) *
+                      (cloth().num_nodes() + cloth().num_edges());
+  if (!kept && (changed_ || cost > trial_work)) return false;
+  try {
+    const auto other = kept ? kept->branch(1) : finer();
+    if (other->time() >= time() || !run_until(*other, time())) return false;
+    const double mine = e.internal(), there = other->energy().internal();
+    return mine <= same * there && there <= same * mine;
+  } catch (const Interrupted&) {
+    return true;  // the run ends, too
+  }
+}
+
 std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
   const TimeStep step = {
       .dt = cure.dt,
       .tolerance = cure.method.info.adaptive ? time_step().tolerance : 0};
-  return changed_
-             ? std::make_unique<Scene>(*this, step, cure.method)
-             : std::make_unique<Scene>(model_, mesh_.mesh, step, cure.method);
+  if (!changed_)
+    return std::make_unique<Scene>(made_of_, mesh_.mesh, step, cure.method);
+  const Scene* kept = witness_ ? witness_->kept() : nullptr;
+  return std::make_unique<Scene>(kept ? *kept : *this, step, cure.method);
 }
 
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "lab/scenes/Compose.hpp"
+#include "lab/stepping/Changes.hpp"
 #include "lab/stepping/Stepper.hpp"
+#include "lab/stepping/Witness.hpp"
 
 namespace lab {
 
@@ -23,7 +25,7 @@ inline double evaluations_of(const MethodInfo& m) {
 /** The cloth of a model, and what acts on it: what a Scene steps. */
 class SceneParts {
  protected:
-  Model model_;
+  Model made_of_, model_;  // at the start; now
   BuiltMesh mesh_;
   System built_;
   std::vector<HeldNodes> held_;
@@ -38,8 +40,9 @@ class SceneParts {
 /** A scene, ready to run. */
 class Scene : private SceneParts, private Stepper {
  public:
-  /** The scene of @a m at t = 0. If nodes lie inside obstacles, all constraints
-   * act once: their work is in flow().
+  /** The scene of @a m at t = 0. If nodes lie inside obstacles, or springs are
+   * strained so that they break, all constraints act once: their work is in
+   * flow().
    * @pre m.step.dt > 0
    * Throws std::invalid_argument if the step is to be chosen and nothing
    * bounds it; InputError, SceneError. */
@@ -54,7 +57,9 @@ class Scene : private SceneParts, private Stepper {
         const MethodEntry& method);
   /** A copy of the present state of @a other, its pins and its hand, to
    * continue with another method and step: at its time, but with no step done,
-   * no force evaluated and nothing in flow().  @pre step.fixed() */
+   * no force evaluated and nothing in flow(). Changes of Model::at are still to
+   * come, but those to another method only if @a method is that of @a other.
+   * @pre step.fixed() */
   Scene(const Scene& other, const TimeStep& step, const MethodEntry& method);
 
   /** Back to t = 0.  Invalidates: every handle into cloth(). */
@@ -63,6 +68,10 @@ class Scene : private SceneParts, private Stepper {
   /** Its model, with the changes of forces. */
   const Model& model() const { return model_; }
   const BuiltMesh& mesh() const { return mesh_; }
+  /** The id of the node of this number in the mesh. */
+  unsigned id_of(unsigned number) const {
+    return number < mesh_.ids.size() ? mesh_.ids[number] : unsigned(-1);
+  }
   /** The forces of the model, without the hand. */
   const CombinedForces& force() const { return built_.acting; }
   /** The cloth; between two steps it may be changed in any way. */
@@ -73,14 +82,41 @@ class Scene : private SceneParts, private Stepper {
   /** A warning about the first of them, right after its step; else "". */
   std::string missed_text() const;
 
+  /** The number of changes of Model::at that are still to be made. Each is made
+   * in the first state from its time on, at which a step ends. */
+  std::size_t changes_left() const { return changes_.size() - made_; }
+  /** A stability limit [s], and the time of the change that brings it [s]. */
+  struct Limit {
+    double limit, since = 0;
+  };
+  /** The shortest limit of the run: safe_limit() at the start, and after each
+   * change of Model::at, made without a step.
+   * Complexity: a scene from the mesh; for each change, as safe_limit() */
+  Limit least_limit() const;
+  /** As that of Stepper. What was changed by hand is not saved. */
+  void archive(Archive& a);
+
   const Stepper& stepper() const { return *this; }
-  using Stepper::archive, Stepper::check, Stepper::control, Stepper::done,
-      Stepper::drift, Stepper::dt, Stepper::energy, Stepper::energy_watch,
-      Stepper::evaluations, Stepper::failure, Stepper::flow,
-      Stepper::follow_drag, Stepper::guard_interval, Stepper::lost,
-      Stepper::method, Stepper::run_to, Stepper::safe_limit, Stepper::settle,
-      Stepper::settled_steps, Stepper::step, Stepper::steps,
-      Stepper::steps_at_once, Stepper::time, Stepper::watch_energy;
+  using Stepper::check, Stepper::control, Stepper::done, Stepper::drift,
+      Stepper::dt, Stepper::energy, Stepper::evaluations, Stepper::failure,
+      Stepper::flow, Stepper::follow_drag, Stepper::guard_interval,
+      Stepper::lost, Stepper::method, Stepper::run_to, Stepper::safe_limit,
+      Stepper::settle, Stepper::settled_steps, Stepper::step, Stepper::steps,
+      Stepper::steps_at_once, Stepper::time;
+
+  /** From now on witness() looks at the run, unless its method was added: that
+   * may not run twice.  @param t_end, whole as there */
+  void watch(double t_end, bool whole = false);
+  /** Null: there is none. */
+  const Witness* witness() const { return witness_.get(); }
+  /** Was there a change since the start that model() does not tell? */
+  bool was_changed() const { return changed_; }
+  /** This run with half of its step: from its start, or from the present state
+   * if it was_changed(). Its guard stops it only if it is not finite. */
+  std::unique_ptr<Scene> finer() const;
+  /** The present state, to continue with @a share of its step and such a guard.
+   */
+  std::unique_ptr<Scene> branch(double share) const;
 
   // Changes between two steps: of the present state or, after a failure, of the
   // last good one. The energy that a change adds counts as work in flow(). All
@@ -90,6 +126,10 @@ class Scene : private SceneParts, private Stepper {
   /** Another method and step.  Throws as the constructor; then nothing has
    * changed. */
   void change_method(const MethodEntry& method, const TimeStep& step);
+  /** Another method by the present step: fixed, if it can choose none. */
+  void take_method(const MethodEntry& method);
+  /** Choose a chosen step anew if it is above the limit now. */
+  void fit_step();
   /** Take the forces, K and gravity of @a m, which has the same cloth. Rest
    * lengths, masses and constraints stay.  O(building the cloth) */
   void change_forces(const Model& m);
@@ -119,7 +159,7 @@ class Scene : private SceneParts, private Stepper {
    * methods and steps, each to t_end() or for trial_work; without a t_end() to
    * 5 s or longer, or for a sixteenth of that. Trials that do not fail are
    * repeated with half the step.
-   * @pre failure(), or energy_watch() has found that the run is wrong
+   * @pre failure(), or witness() has found that the run is wrong
    * Throws Interrupted. */
   const Diagnosis& diagnosis() const;
   /** Failure and diagnosis in words; only the failure if a signal interrupts
@@ -128,11 +168,6 @@ class Scene : private SceneParts, private Stepper {
   Explanation explanation() const;
   /** The remedy in words.  @pre and throws as explanation() */
   std::string remedy() const;
-  /** This run, compared with one of half of its step: passed if the energies
-   * are the same, to 2.5 % of the largest. nullopt: it fails, or would take
-   * more than @a work, or there was a change since the start.
-   * @pre energy_watch(), no failure()   Throws Interrupted. */
-  std::optional<Attempt> half_step(double work) const;
   /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
   /** The scene with the method and step of @a cure: from its start, or from the
@@ -145,12 +180,22 @@ class Scene : private SceneParts, private Stepper {
   std::unique_ptr<Scene> beyond_failure(double distance) const;
 
  private:
-  bool changed_ = false;                        // since the start
+  MethodEntry first_;                           // before changes_
+  std::vector<Change> changes_;                 // of Model::at
+  std::size_t made_ = 0;                        // of changes_
+  bool makes_ = false;                          // one of them is being made
+  bool changed_ = false;                        // by hand, since the start
   mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
+  std::unique_ptr<Witness> witness_;
 
   template <typename Change>
   void edit(Change change);
   void pull(std::optional<HandForce> hand);
+  TimeStep finer_step(double share) const;
+  bool confirms(const Energies& e) const;
+  void note_change(bool by_hand);
+  void await_change();
+  void make_change();
 };
 
 }  // namespace lab

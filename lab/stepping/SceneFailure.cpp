@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/stepping/Scene.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 
@@ -28,63 +28,40 @@ FailedRun failed_run(const Scene& s) {
   run.safe_without_drag = stepper.limits().safe_without_drag(method);
   run.verlet = s.safe_limit(table::verlet);
   run.flat = is_flat(s.cloth());
+  const Verdict* verdict = s.witness() ? s.witness()->said() : nullptr;
   run.rigid =
-      !failure && s.energy_watch() && s.energy_watch()->gains_beside_springs();
+      !failure && verdict &&
+      (verdict->scale <= verdict->slack || verdict->gain > 2 * verdict->mine);
+  if (failure || !verdict) return run;
+  if (!verdict->has_answer()) run.asked = verdict->asked;
+  if (!verdict->gains() && !verdict->is_off()) run.apart = verdict->apart;
   return run;
 }
 
-/** The largest distance of a node of @a a from where it is in @a b, by the side
- * of a square sheet with so many nodes and such springs; infinite if the node
- * was removed there. */
-double distance(const Cloth& a, const Cloth& b) {
-  double most = 0, length = 0;
-  for (Node n : a.nodes()) {
-    if (!arrays(b).node_in_use(n.id())) return no_limit;
-    const Point there = arrays(b).node_with_id(n.id()).position();
-    most = std::max(most, double(norm(n.position() - there)));
-  }
-  for (Edge e : a.edges()) length += e.length();
-  const double side = length / a.num_edges() * std::sqrt(a.num_nodes());
-  return side > 0 ? most / side : most;
-}
-
-/** Run with @a cure and with half of its step; the energies of both runs must
- * agree at all times, because a run that does not fail may still be wrong. */
+/** Run with @a cure until @a t_end, or until it took @a left, and let a witness
+ * judge that run: one that does not fail may still be wrong. */
 Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
                 double left) {
-  const auto energy = [](const Energies& e, EnergyFlow flow) {
-    flow.drag = 0;  // a sum over steps
-    return balance(e, flow);
-  };
   try {
     const auto trial = failed.anew(cure);
-    trial->watch_energy(t_end);
-    const long long every =
-        1 + (long long)((t_end - trial->time()) / cure.dt / 64);
-    std::vector<std::pair<double, double>> samples;  // time [s], balance [J]
-    double largest = 0;                              // kinetic, elastic [J]
-    while (!trial->done(t_end) && left > 0 && trial->step(t_end)) {
-      const Cloth& g = trial->cloth();
-      left -=
-          evaluations_of(cure.method.info) * (g.num_nodes() + g.num_edges());
+    const Model& m = trial->model();
+    const double springs =
+        evaluations_of(cure.method.info) *
+        (trial->cloth().num_nodes() + trial->cloth().num_edges());
+    t_end = std::min(t_end, trial->time() + left / springs * cure.dt);
+    trial->watch(t_end, true);
+    std::optional<Observer> observer;
+    if (m.measure.quantity != Measure::positions) observer.emplace(m, *trial);
+    while (!trial->done(t_end)) {
+      trial->step(t_end);
+      if (m.measure.over_time() && observer) observer->look(m, *trial);
       end_if_interrupted();
-      if (trial->steps() % every != 0) continue;
-      const Energies e = trial->energy();
-      largest = std::max(largest, e.kinetic + e.elastic);
-      samples.emplace_back(trial->time(), energy(e, trial->flow()));
     }
-    const double end = trial->time();
-    bool passed = !trial->failure() && (trial->done(t_end) || trial->settle());
-    const EnergyWatch& watch = *trial->energy_watch();
-    passed = passed && !watch.gains() && !watch.is_off();
-    const auto finer = failed.anew({cure.method, cure.dt / 2});
-    const double apart =
-        energy_tolerance / 2 * largest + failed.stepper().round_off();
-    for (const auto& [time, b] : samples)
-      passed = passed && finer->run_to(time, end_if_interrupted) &&
-               std::abs(energy(finer->energy(), finer->flow()) - b) <= apart;
-    passed = passed && finer->run_to(end, end_if_interrupted);
-    return {passed, end, passed ? distance(trial->cloth(), finer->cloth()) : 0};
+    if (!trial->check()) return {false, trial->time()};
+    const Answer mine = observer ? observer->answer(m, *trial) : Answer();
+    if (!trial->witness()) return {true, trial->time()};
+    const Verdict& v = trial->witness()->verdict(observer ? &mine : nullptr);
+    return {!v.gains() && !v.was_off(), trial->time(), v.apart, v.answer};
   } catch (const std::invalid_argument&) {  // not with this force
     return {false, 0};
   }
@@ -92,27 +69,13 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
 
 }  // namespace
 
-std::optional<Attempt> Scene::half_step(double work) const {
-  const double springs = cloth().num_nodes() + cloth().num_edges();
-  if (changed_ ||
-      2 * double(steps()) * evaluations_of(method()) * springs > work)
-    return std::nullopt;
-  const auto finer = anew({method_entry(), dt() / 2});
-  // With order 1, that is half of the error.
-  const double most = energy_tolerance / 4 * energy_watch()->largest() +
-                      energy_watch()->slack();
-  if (!finer->run_to(time(), end_if_interrupted)) return std::nullopt;
-  return Attempt{std::abs(finer->energy().total() - energy().total()) <= most,
-                 time(), distance(cloth(), finer->cloth())};
-}
-
 const Diagnosis& Scene::diagnosis() const {
   if (diagnosis_) return *diagnosis_;
   const FailedRun run = failed_run(*this);
   const bool ends = std::isfinite(t_end());  // else somebody waits for the cure
   const double end = ends ? t_end() : std::max(5., 2 * run.time);
   return diagnosis_.emplace(diagnose(run, [&](const Cure& cure) {
-    return attempt(*this, cure, end, ends ? trial_work : trial_work / 16);
+    return attempt(*this, cure, end, trial_work);
   }));
 }
 

@@ -21,7 +21,8 @@ class StepLimits {
              const std::optional<HandForce>& hand)
       : cloth_(g), force_(force), constraint_(constraint), hand_(hand) {}
 
-  /** The stability limit [s] of @a method in every configuration of the cloth;
+  /** The stability limit [s] of @a method for small oscillations about any
+   * configuration of the cloth;
    * no_limit if there is none, 0 if no step is stable.
    * Complexity: the first call as omega_safe() */
   double safe(const MethodEntry& method) const;

@@ -37,7 +37,6 @@ void Stepper::restart(double t) {
   EnergyFlow flow;
   if (system_.overlaps) flow.work = remove_overlaps();
   start(flow);
-  if (watch_) start_watch();
 }
 
 /** Let the constraints act on the initial state.
@@ -92,7 +91,6 @@ void Stepper::change_method(const MethodEntry& method, const TimeStep& step) {
     entry_ = method, step_ = step;
     clock_.set_dt(dt);
     make_method();
-    if (watch_) watch_->change_step(dt, method.info.ahead());
   });
 }
 
@@ -118,7 +116,7 @@ void Stepper::start_control() {
   control_.reset();
   if (failure_) return;
   const bool has_wind = system_.wind != Point();  // it gives energy: Guard
-  if (!step_.fixed() || follows_drag_ || watch_ || has_wind) start_drag();
+  if (!step_.fixed() || follows_drag_ || has_wind) start_drag();
   if (step_.fixed()) return;
   const double longest = limits_.mild(entry_, drag_, clock_.dt, step_.gain);
   if (longest < clock_.dt) clock_.set_dt(longest);
@@ -145,19 +143,6 @@ void Stepper::follow_drag() {
   if (!control_) start_drag();
 }
 
-void Stepper::watch_energy(double t_end) {
-  constexpr double looks = 64;
-  watch_interval_ =
-      int(std::clamp(t_end / clock_.dt / looks, 1., double(guard_interval)));
-  start_watch();
-  if (!control_) start_drag();
-}
-void Stepper::start_watch() {
-  watch_.emplace(energy(), flow(), clock_.dt, guard_->floor(),
-                 guard_->round_off(), entry_.info.ahead());
-  before_.watch = latest_.watch = watch_;
-}
-
 bool Stepper::run_to(double t_end, const std::function<void()>& after) {
   while (!done(t_end)) {
     steps_at_once(after ? 1 : guard_interval, t_end);
@@ -177,6 +162,10 @@ static bool works(const System& s, const StepClock& c) {
 
 bool Stepper::steps_at_once(int most, double t_end) {
   t_end_ = t_end;
+  while (event_time_ <= time() + no_step * clock_.dt) {
+    event_time_ = no_limit;
+    std::exchange(event_, nullptr)();
+  }
   const bool good = some_steps(most);
   for (SettledReader* r : readers_) r->settle(steps(), settled_steps());
   return good;
@@ -192,18 +181,11 @@ bool Stepper::some_steps(int most) {
   const bool judged =
       control_ && (now || clock_.steps % StepControl::look_interval == 0);
   const bool guarded = now || clock_.steps - checked_.steps >= guard_interval;
-  // The second step tells more exactly what drag took in the first.
-  const bool watched =
-      watch_ &&
-      (now || (clock_.steps > 1 && clock_.steps % watch_interval_ == 0));
-  if (!drag_.none())
-    sample_drag(now || watched || moves || (guarded && !control_));
-  if (!judged && !guarded && !watched) return true;
+  if (!drag_.none()) sample_drag(now || moves || (guarded && !control_));
+  if (!judged && !guarded) return true;
   const Energies e = energy();
   if (judged && !judge(e)) return take_back();
-  if (guarded && !guard(e)) return false;
-  if (watched) watch_->look(e, flow());
-  return true;
+  return !guarded || guard(e);
 }
 
 /** The number of steps, up to @a most, until the next check. */
@@ -213,7 +195,9 @@ int Stepper::steps_to_check(int most) const {
     most = std::min(most, interval - int(clock_.steps % interval));
   };
   most = std::min(most, guard_interval - int(clock_.steps - checked_.steps));
-  if (watch_) up_to_multiple(watch_interval_);
+  for (const SettledReader* r : readers_)
+    if (const double left = (r->due() - time()) / clock_.dt; left < most)
+      most = int(std::ceil(left - no_step));
   if (control_ || !drag_.none()) up_to_multiple(StepControl::look_interval);
   if (!drag_.none()) up_to_multiple(drag_interval());
   return std::max(most, 1);
@@ -221,7 +205,8 @@ int Stepper::steps_to_check(int most) const {
 
 bool Stepper::advance(int most) {
   const double dt = clock_.dt;
-  const double end = std::min(t_end_, constraint_.next_velocity_jump(time()));
+  const double end =
+      std::min({t_end_, event_time_, constraint_.next_velocity_jump(time())});
   const double left = (end - time()) / dt;  // in steps
   const bool last = left < 1 + no_step, whole = std::abs(left - 1) < no_step;
   const double h = whole || left > 2 - no_step ? dt
@@ -243,7 +228,6 @@ bool Stepper::advance(int most) {
   }
   clock_.steps += count;
   if (last || h != dt) clock_.set_time(then);
-  jumped_ = last;
   balance_->follow(system_.cloth, time(), constraint_);
   return true;
 }
@@ -256,37 +240,19 @@ int Stepper::drag_interval() const {
                         double(StepControl::look_interval)));
 }
 
-/** Remember the state in which drag is sampled. */
+/** Remember the power of drag now. */
 void Stepper::keep_sample() {
   drag_power_ = drag_.power(system_.cloth, system_.wind), sampled_ = time();
-  if (drag_is_strong()) drag_from_.keep(system_.cloth);
-}
-
-/** Does drag take much of a velocity in a step? Then it is sampled in each. */
-bool Stepper::drag_is_strong() const {
-  return !control_ && largest_gamma_ * clock_.dt > 0.1;
 }
 
 /** Add what drag took since the last sample, if velocities may have changed
- * since then, or if there is a check @a now. */
+ * since then, or if there is a check @a now: by the trapezoidal rule. */
 void Stepper::sample_drag(bool now) {
   if (!now && clock_.steps % drag_interval() != 0 &&
       clock_.steps % StepControl::look_interval != 0)
     return;
-  const double power = drag_.power(system_.cloth, system_.wind);
-  const double h = time() - sampled_, change = power - drag_power_;
-  double loss = 0.5 * (drag_power_ + power) * h;
-  const bool follows = !control_ && std::abs(h - drag_step_) < 1e-9 * h;
-  // As in EnergyBalance; by the same parabola for the first of equal steps,
-  // unless it began with a jump of held nodes, whose work has that error, too.
-  if (follows) loss -= drag_owed_ * (change - drag_change_) * h / 12;
-  drag_owed_ = follows || works(system_, clock_) ? 1 : 2;
-  if (drag_is_strong())
-    loss = drag_.loss(system_.cloth, system_.wind, h, drag_from_.positions(),
-                      drag_from_.values());
-  balance_->add_drag(loss);
+  balance_->add_drag(drag_loss() - flow().drag);
   keep_sample();
-  drag_change_ = change, drag_step_ = jumped_ ? 0 : h;
 }
 
 double Stepper::drag_loss() const {
@@ -331,13 +297,16 @@ void Stepper::keep_both() {
 void Stepper::keep(Snapshot& s) const {
   s.nodes.keep(system_.cloth);
   s.clock = clock_, s.flow = flow(), s.control = control_->state();
-  s.watch = watch_;
   s.version = arrays(system_.cloth).version();
 }
 
 /** The guard's verdict on the present state, of energy @a e. */
 bool Stepper::guard(const Energies& e) {
-  if (!guard_->accept(system_.cloth, e, flow())) return not_good(clock_.steps);
+  if (!guard_->accept(system_.cloth, e, flow())) {
+    if (!std::isfinite(e.total()) || !confirms_ || !confirms_(e))
+      return not_good(clock_.steps);
+    guard_->allow(system_.cloth, e.internal());
+  }
   keep_checked();
   return true;
 }
@@ -362,7 +331,6 @@ bool Stepper::take_back() {
     flow.removed += before_.control.last + flow.work - flow.removed -
                     flow.drag - energy().total();
   control_->take_back(before_.control, steps);
-  watch_ = before_.watch;
   clock_ = before_.clock;
   clock_.set_dt(control_->dt());
   go_on(clock_, flow);
@@ -402,7 +370,6 @@ void Stepper::go_on(const StepClock& clock, const EnergyFlow& flow) {
   balance_->resume(system_.cloth, time(), constraint_, flow);
   method_->restart();
   keep_sample();
-  drag_step_ = 0;
   keep_checked();
 }
 
@@ -441,17 +408,13 @@ void Stepper::archive(Archive& a) {
   if (a.loads()) version_ = arrays(system_.cloth).version();
   long long evaluated = evaluations();
   Work worked = work();
-  a(evaluated)(worked)(
-      sampled_)(drag_power_)(drag_change_)(drag_step_)(drag_owed_);
+  a(evaluated)(worked)(sampled_)(drag_power_);
   if (a.loads())
     evaluations_ = evaluated - force_->evaluations(), work_ = worked;
-  if (a.loads() && drag_is_strong()) drag_from_.keep(system_.cloth);
   a.require(clock_.dt == (control_ ? clock_.dt : step_.dt) && evaluated >= 0 &&
             std::min({worked.inner, worked.newton, worked.products,
                       worked.factors}) >= 0 &&
-            sampled_ <= time() && (drag_owed_ == 1 || drag_owed_ == 2) &&
-            std::isfinite(sampled_ + drag_power_ + drag_change_ + drag_step_));
-  if (watch_) a(*watch_);
+            sampled_ <= time() && std::isfinite(sampled_ + drag_power_));
   if (!control_) return;
   control_->archive(a);
   a(looked_);
@@ -461,7 +424,6 @@ void Stepper::archive(Archive& a) {
     bool whole =
         s->version == arrays(system_.cloth).version();  // nothing removed since
     a(s->nodes)(s->clock)(s->flow)(s->control)(whole);
-    if (s->watch) a(*s->watch);
     a.require(not_after(s->clock));
     if (a.loads())
       s->version = whole ? arrays(system_.cloth).version()

@@ -6,7 +6,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lab/stability/Diagnosis.hpp"
@@ -46,15 +48,17 @@ struct System {
   CombinedForces acting{CombinedForces::List()};  ///< without the hand
   std::optional<HandForce> hand;
   std::optional<WatchedConstraint> watched;  ///< nullopt only until it is built
-  bool overlaps = false;                     ///< nodes start inside an obstacle
+  bool overlaps = false;  ///< at the start a constraint has something to do
 };
 
-/** Reads what is settled: see Settled. */
+/** Is told of the steps of a run: see Settled, Witness. */
 class SettledReader {
  public:
   /** The steps of a run beyond @a now will come again; the first @a settled
    * ones can't be taken back any more. */
   virtual void settle(long long now, long long settled) = 0;
+  /** The time of the state [s] that it wants to be told of next. */
+  virtual double due() const { return no_limit; }
 
  protected:
   ~SettledReader() = default;
@@ -146,19 +150,22 @@ class Stepper {
   /** The energy that drag, contact, tearing and errors of the method took since
    * the start [J].  As long as energy() */
   double lost() const;
-  /** From now on energy_watch() follows the error of the energy.
-   * @pre no step is done
-   * @param t_end end of the run [s]: it looks 64 times until then, but at least
-   * every guard_interval steps.  Complexity: 0.7 of a force evaluation each;
-   * drag is summed every few steps, unless follow_drag() */
-  void watch_energy(double t_end);
-  const std::optional<EnergyWatch>& energy_watch() const { return watch_; }
-  /** Drag has taken 95 % of an initial energy, 1 - exp(-3). */
-  bool forgets() const { return largest_gamma_ * time() > 1.5; }
-  /** The energy of springs strained by round-off [J]. */
-  double round_off() const { return guard_->round_off(); }
+  /** Before the guard calls a finite state diverged, it asks @a confirms: does
+   * a finer run have such an energy now, too? Then the motion is fast. */
+  void confirm_by(std::function<bool(const Energies&)> confirms) {
+    confirms_ = std::move(confirms);
+  }
+  /** Call @a make in the first state from @a time [s] on, before the next step;
+   * a step ends there. It may call at() for what comes next. */
+  void at(double time, std::function<void()> make) {
+    event_time_ = time, event_ = std::move(make);
+  }
+  /** DivergenceGuard::floor(): a negligible energy [J]. */
+  double floor() const { return guard_->floor(); }
   /** Force evaluations since the start, without those in linear solves. */
   long long evaluations() const { return evaluations_ + force_->evaluations(); }
+  /** Method::pulls(). */
+  std::span<const Point> pulls() const { return method_->pulls(); }
   /** The other work of the method since the start. */
   Work work() const;
   /** What happened when step() returned false; nullopt before. */
@@ -195,7 +202,6 @@ class Stepper {
     change();
     EnergyFlow flow = this->flow();
     flow.work += energy().total() - before;
-    if (watch_) watch_->change_system();
     start(flow);
   }
   /** Another method and step.  Throws as the constructor; then nothing has
@@ -221,7 +227,6 @@ class Stepper {
     StepClock clock;
     EnergyFlow flow;
     StepControl::State control;
-    std::optional<EnergyWatch> watch;  // it has seen none of a later state
     std::size_t version = 0;
   };
 
@@ -248,17 +253,13 @@ class Stepper {
   Drag drag_;                 // none if its loss is not followed
   double largest_gamma_ = 0;  // of drag_ [1/s]
   double sampled_ = 0, drag_power_ = 0;  // time of last sample [s]; then [W]
-  // How the power changed in that step [W]; its length [s], 0: it jumped.
-  double drag_change_ = 0, drag_step_ = 0;
-  NodeStates drag_from_;  // the state of the last sample, of strong drag
-  int drag_owed_ = 2;     // steps that the next correction is for
-  bool jumped_ = false;   // a velocity jumps at the end of the last step
-  std::optional<EnergyWatch> watch_;
-  int watch_interval_ = 1;
-  long long evaluations_ = 0;  // besides those of force_
-  Work work_;                  // of earlier methods
-  double start_energy_ = 0;    // [J]
-  std::string error_;          // of the method
+  std::function<bool(const Energies&)> confirms_;
+  double event_time_ = no_limit;  // [s]
+  std::function<void()> event_;   // then
+  long long evaluations_ = 0;     // besides those of force_
+  Work work_;                     // of earlier methods
+  double start_energy_ = 0;       // [J]
+  std::string error_;             // of the method
   mutable std::vector<SettledReader*> readers_;
 
   double remove_overlaps();
@@ -267,12 +268,10 @@ class Stepper {
   void plan();
   void start_control();
   void start_drag();
-  void start_watch();
   int steps_to_check(int most) const;
   int drag_interval() const;
   void sample_drag(bool now);
   void keep_sample();
-  bool drag_is_strong() const;
   bool some_steps(int most);
   bool judge(const Energies& e);
   void keep(Snapshot& s) const;

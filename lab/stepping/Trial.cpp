@@ -13,7 +13,8 @@ namespace lab {
 Answer answer(const Model& m, const Scene& scene, const Measure& what) {
   return quantities[what.quantity].read(
       {m, scene.cloth(), scene.time(), &scene.held(), &scene.force(),
-       what.quantity == Measure::lost_energy ? scene.lost() : 0},
+       what.quantity == Measure::lost_energy ? scene.lost() : 0,
+       scene.stepper().pulls()},
       what);
 }
 
@@ -124,7 +125,13 @@ Answer Observer::answer(const Model& m, const Scene& scene) const {
 }
 
 double step_of(const Model& m) {
-  const double dt = m.step.fixed() ? m.step.dt : Scene(m).dt();
+  double dt = m.step.dt;
+  if (!m.step.fixed()) {
+    const Scene scene(m);
+    const double limit = scene.least_limit().limit;
+    dt = scene.dt() *
+         (limit < scene.safe_limit() ? limit / scene.safe_limit() : 1);
+  }
   return m.t_end > 0 ? m.t_end / std::ceil(m.t_end / dt * (1 - 1e-12)) : dt;
 }
 
@@ -145,10 +152,9 @@ Trial try_out(const Model& m, const Shake& shake,
     // The guard starts anew: it would take these strains for a divergence.
     scene.change_method(*m.method, {.dt = result.dt});
   }
-  scene.watch_energy(m.t_end);
   Observer observer(m, scene);
   const double springs = double(scene.cloth().num_edges()),
-               factor = 10 * std::sqrt(double(scene.cloth().num_nodes()));
+               factor = factor_sweeps(scene.cloth());
   const bool ok = scene.run_to(m.t_end, [&] {
     end_if_interrupted();
     after(scene);
@@ -160,8 +166,6 @@ Trial try_out(const Model& m, const Shake& shake,
       result.earlier.resize(due, observer.answer(m, scene));
   });
   result.failure = text_of(scene.failure());
-  if (const auto& watch = *scene.stepper().energy_watch(); ok && watch.gains())
-    result.gain = watch.gain_text();
   if (ok) {
     result.answer = observer.answer(m, scene);
     if (result.answer.empty())

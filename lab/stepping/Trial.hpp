@@ -2,6 +2,7 @@
 /** @file Trial.hpp
  * The answer of a run: try_out() makes one and returns it. */
 #include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -68,6 +69,11 @@ class Observer {
   Settled<Look> looks_;
 };
 
+/** The cost of a factor of a matrix, in force sweeps: 10 per node of a side. */
+inline double factor_sweeps(const Cloth& g) {
+  return 10 * std::sqrt(double(g.num_nodes()));
+}
+
 /** The result of a run. */
 struct Trial {
   Answer answer;  ///< empty if the run failed
@@ -75,9 +81,8 @@ struct Trial {
   std::vector<Answer> earlier;
   static constexpr int looks = 64;
   std::string failure;  ///< why it failed; else empty
-  std::string gain;     ///< why ./cloth would end with status 3; else empty
   double work = 0;      ///< springs times force evaluations and products with
-                        ///< a matrix; a factor of it: 10 per node of a side
+                        ///< a matrix; a factor of it: factor_sweeps()
   double seconds = 0;   ///< duration on this machine
   double dt = 0;        ///< the first step [s]
   long long steps = 0;

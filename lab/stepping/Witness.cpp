@@ -1,0 +1,376 @@
+#include "lab/stepping/Witness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "CME212/Util.hpp"
+#include "lab/fast/Energy.hpp"
+#include "lab/fast/GraphArrays.hpp"
+#include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Scene.hpp"
+#include "lab/stepping/Trial.hpp"
+
+namespace lab {
+
+namespace {
+
+constexpr int looks = 64, windows = 8;         // of a run
+constexpr int window_looks = looks / windows;  // of a window
+constexpr double endless = 5;                  // a run without an end [s]
+
+double median(std::vector<double> all) {
+  std::ranges::sort(all);
+  const std::size_t n = all.size();
+  return n == 0 ? 0 : (all[(n - 1) / 2] + all[n / 2]) / 2;
+}
+
+/** The error of a run by its difference from one with half of the step. At
+ * contacts every method is of order 1. */
+double error_factor(const Model& scene, const MethodInfo& m) {
+  const int order = scene.has_contact() ? 1 : m.order;
+  return m.adaptive ? 1 : 1 / (1 - std::pow(2., -order));
+}
+
+/** What @a s did so far, in force sweeps. */
+double sweeps_of(const Scene& s) {
+  const Work w = s.stepper().work();
+  return double(s.evaluations() + w.products) +
+         factor_sweeps(s.cloth()) * double(w.factors);
+}
+
+/** The side of a square sheet with so many nodes and such springs [m]. */
+double side_of(const Cloth& g) {
+  double length = 0;
+  for (Edge e : g.edges()) length += e.length();
+  return g.num_edges() == 0
+             ? 0
+             : length / g.num_edges() * std::sqrt(double(g.num_nodes()));
+}
+
+/** The largest distance of a node of @a a from where it is in @a b, by @a size
+ * [m]; infinite if the node was removed there. */
+double distance(const Cloth& a, const Cloth& b, double size) {
+  double most = 0;
+  for (Node n : a.nodes()) {
+    if (!arrays(b).node_in_use(n.id())) return no_limit;
+    const Point there = arrays(b).node_with_id(n.id()).position();
+    most = std::max(most, double(norm(n.position() - there)));
+  }
+  return size > 0 ? most / size : most;
+}
+
+/** The change from @a b to @a a as a share: of lengths by the size of the
+ * cloth, of energies by the largest one, else by the larger of both, but no
+ * less than a strain of 1e-7 or the force of a spring with it. */
+double changed_by(const Answer& a, const Answer& b, const Measure& what,
+                  const Cloth& g, double size, double energy) {
+  if (a.size() != b.size()) return no_limit;
+  const double far = a.empty() ? 0 : distance(a, b, what);
+  if (!(far > 0)) return 0;
+  const Answer none(a.size());
+  double whole = std::max(distance(a, none, what), distance(b, none, what));
+  const std::string unit = unit_of(what);
+  if (unit == "m" && !what.is_time()) whole = std::max(whole, size);
+  if (unit == "J" && !what.is_time()) whole = std::max(whole, energy);
+  constexpr double strain = 1e-7;
+  if (unit.empty()) whole = std::max(whole, strain);
+  if (unit == "N")
+    for (Edge e : g.edges())
+      whole = std::max(whole, strain * e.value().K * e.value().L);
+  return far / whole;
+}
+
+/** A change of energy is a share of this, or more [J]. */
+double least_energy(const Verdict& v) {
+  return std::max(v.scale, 20 * v.slack);
+}
+
+}  // namespace
+
+bool run_until(Scene& s, double time) {
+  while (!s.done(time)) {
+    s.steps_at_once(Scene::guard_interval, time);
+    end_if_interrupted();
+  }
+  return s.check();
+}
+
+// -------------------------------------------------------------------- Verdict
+
+std::string Verdict::text() const {
+  using CME212::percent;
+  if (failed) return "half of dt fails";
+  std::string all = "half of dt: ";
+  if (scale > 0 && std::max(gain, loss) > slack)
+    all += "energy " + percent(std::abs(off) / scale) + ", ";
+  all += "positions " + (apart == no_limit ? "of other nodes" : percent(apart));
+  if (!asked.empty())
+    all +=
+        ", " + asked + ' ' + (answer == no_limit ? "missing" : percent(answer));
+  return all + "; compared " +
+         (whole ? "the whole run" : "8 windows of the run") + ", " +
+         percent(cost) + " of its force sweeps";
+}
+
+std::string Verdict::difference() const {
+  using CME212::percent;
+  if (failed) return "half of dt fails";
+  std::string all = "half of dt gives ";
+  const char* separator = "";
+  const auto add = [&](const std::string& what) {
+    all += separator + what;
+    separator = ", and ";
+  };
+  if (is_off())
+    add("another energy, by " + CME212::two_digits(std::abs(off)) + " J" +
+        (scale > 0 ? ", " + percent(std::abs(off) / scale) + " of the largest"
+                   : ""));
+  if (apart == no_limit)
+    add("other nodes that are removed");
+  else if (!has_place())
+    add("positions that differ by up to " + percent(apart) +
+        " of the size of the cloth");
+  if (!has_answer() && !(asked == "energy" && is_off()))
+    add("another " + asked +
+        (answer == no_limit ? ", or none" : ", by " + percent(answer)));
+  return all;
+}
+
+std::string Verdict::wrong_text() const {
+  if (!gains())
+    return asked + " is not known: " + difference() +
+           ", while all positions are the same";
+  return "an error of the method has added " + CME212::two_digits(gain) +
+         " J of energy, which half of dt does not: this is not the motion of "
+         "the scene";
+}
+
+// -------------------------------------------------------------------- Witness
+
+Witness::Look::Look(const Scene& s)
+    : step(s.steps()), time(s.time()), loose(s.flow().loose) {
+  const Energies e = s.energy();
+  total = e.total(), internal = e.internal(), kinetic = e.kinetic;
+}
+
+Witness::Witness(const Scene& scene, double t_end, bool whole)
+    : scene_(scene), t_end_(t_end), asked_whole_(whole) {
+  scene_.stepper().tell(this);
+  restart();
+}
+Witness::~Witness() { scene_.stepper().tell_no_more(this); }
+
+void Witness::restart() {
+  looks_.clear(), kept_.reset(), drifts_.clear();
+  windows_ = Verdict(), windows_.whole = false;
+  sweeps_ = 0, said_.reset(), said_at_ = -1;
+  begin_ = scene_.time();
+  const Cloth& g = scene_.cloth();
+  from_ = center_of_mass(g), edges_ = g.num_edges();
+  const double sweep =
+      evaluations_of(scene_.method()) * (g.num_nodes() + g.num_edges());
+  whole_ = std::isfinite(t_end_) &&
+           (asked_whole_ ||
+            2 * (t_end_ - begin_) / scene_.dt() * sweep < Scene::trial_work);
+  if (whole_ && scene_.was_changed()) kept_ = scene_.branch(0.5);
+  next_ = 0;
+  look_again();
+}
+
+void Witness::change() {
+  said_.reset();
+  if (scene_.steps() == 0) return restart();
+  if (!whole_ || !kept_) kept_.reset(), looks_.clear();
+  if (!std::exchange(whole_, false)) return;
+  next_ = 0;
+  look_again();
+}
+
+/** Find when to look next: whole_: each 64th of the run; else 9 times in each
+ * window. */
+void Witness::look_again() {
+  const double whole = std::isfinite(t_end_) ? t_end_ - begin_ : endless;
+  due_ = no_limit;
+  if (!(whole > 0)) return;
+  do {
+    const int k = next_++;
+    if (whole_) {
+      due_ = begin_ + whole * (k + 1) / looks;
+    } else {
+      const int each = window_looks + 1, window = k / each;
+      const int in_512ths = looks * (window + 1) - window_looks + k % each;
+      due_ = begin_ + whole * in_512ths / (looks * window_looks);
+    }
+  } while (due_ <= scene_.time());
+}
+
+void Witness::settle(long long now, long long /*settled*/) {
+  while (!looks_.empty() && looks_.back().step > now) looks_.pop_back();
+  if (scene_.failure() || scene_.time() < due_ - 1e-9 * scene_.dt()) return;
+  if (whole_)
+    looks_.emplace_back(scene_);
+  else
+    window();
+  look_again();
+}
+
+/** One look at a window, number next_ - 1. */
+void Witness::window() {
+  const int look = (next_ - 1) % (window_looks + 1);
+  try {
+    if (look == 0) {
+      looks_.clear();
+      kept_ = scene_.branch(0.5);
+      return;
+    }
+    if (!kept_ || kept_->time() >= scene_.time()) return;
+    looks_.emplace_back(scene_);
+    if (look < window_looks) return;
+    double slack = 0;
+    Verdict& v = windows_;
+    const auto finer = kept_->branch(1);
+    std::vector<double> d = repeat(*finer, v, slack);
+    sweeps_ += sweeps_of(*finer);
+    if (v.failed) return;
+    v.slack = std::max(v.slack, slack);
+    v.apart =
+        std::max(v.apart, distance(scene_.cloth(), finer->cloth(), size()));
+    const auto half = d.begin() + std::ptrdiff_t(d.size() / 2);
+    drifts_.push_back(2 *
+                      (median({half, d.end()}) - median({d.begin(), half})));
+    const Model& m = scene_.model();
+    const Measure& what = m.measure;
+    if (what.over_time() || what.quantity == Measure::positions ||
+        what.quantity == Measure::lost_energy)
+      return;
+    v.asked = name_of(what);
+    v.answer = std::max(
+        v.answer, changed_by(answer(m, scene_, what), answer(m, *finer, what),
+                             what, scene_.cloth(), size(), least_energy(v)));
+  } catch (const Interrupted&) {  // the run ends, too
+    kept_.reset();
+  }
+}
+
+/** The size of the cloth or, if it is longer, its way since the start [m]. */
+double Witness::size() const {
+  const Cloth& g = scene_.cloth();
+  return std::max(side_of(g), double(norm(center_of_mass(g) - from_)));
+}
+
+/** Run @a finer through all looks_.
+ * @return what the run has more of energy at each, as an error [J] */
+std::vector<double> Witness::repeat(Scene& finer, Verdict& v,
+                                    double& slack) const {
+  const double factor = error_factor(scene_.model(), scene_.method());
+  std::vector<double> d;
+  const Look* before = nullptr;
+  for (const Look& run : looks_) {
+    if (!run_until(finer, run.time)) {
+      v.failed = true;
+      return d;
+    }
+    const Look other(finer);
+    d.push_back(factor * (run.loose + other.loose > 0
+                              ? run.internal - other.internal
+                              : run.total - other.total));
+    v.scale = std::max(v.scale, other.internal);
+    v.mine = std::max(v.mine, run.internal);
+    slack = std::max(slack, finer.energy().round_off());
+    if (before && run.step > before->step && scene_.method().ahead())
+      // Velocities are a step early: that is no error of the motion.
+      slack = std::max(slack, std::abs(run.kinetic - before->kinetic) /
+                                  double(run.step - before->step));
+    before = &run;
+  }
+  slack += scene_.stepper().floor() / 2;
+  return d;
+}
+
+void Witness::archive(Archive& a, Witness* w) {
+  std::vector<Look> looks;
+  if (w && w->whole_) looks = w->looks_;
+  a(looks);
+  for (const Look& l : looks)
+    a.require(std::isfinite(l.time + l.total + l.internal + l.kinetic) &&
+              l.step >= 0);
+  if (!a.loads() || !w || !w->whole_) return;
+  w->looks_ = std::move(looks);
+  w->look_again();
+}
+
+const Verdict& Witness::verdict(const Answer* mine) const {
+  if (!said_ || said_at_ != scene_.steps()) {
+    said_ = whole_ ? judge_whole(mine) : judge_windows();
+    said_at_ = scene_.steps();
+  }
+  return *said_;
+}
+
+Verdict Witness::judge_whole(const Answer* mine) const {
+  Verdict v;
+  const Model& m = scene_.model();
+  v.sudden = scene_.cloth().num_edges() != edges_;
+  try {
+    const auto finer = kept_ ? kept_->branch(1) : scene_.finer();
+    std::optional<Observer> observer;
+    if (mine) observer.emplace(m, *finer);
+    struct Watch final : SettledReader {
+      Observer& observer;
+      const Scene& scene;
+      Watch(Observer& o, const Scene& s) : observer(o), scene(s) {
+        scene.stepper().tell(this);
+      }
+      ~Watch() { scene.stepper().tell_no_more(this); }
+      void settle(long long, long long) override {
+        observer.look(scene.model(), scene);
+      }
+      double due() const override { return scene.time(); }
+    };
+    std::optional<Watch> each;
+    if (observer && m.measure.over_time()) each.emplace(*observer, *finer);
+    const std::vector<double> d = repeat(*finer, v, v.slack);
+    if (!v.failed && !run_until(*finer, scene_.time())) v.failed = true;
+    v.cost = sweeps_of(*finer) / std::max(1., sweeps_of(scene_));
+    if (v.failed) return v;
+    const std::size_t round = std::max<std::size_t>(1, d.size() / windows);
+    for (std::size_t k = 0; k + round <= d.size(); k += round) {
+      const std::size_t end = k + 2 * round <= d.size() ? k + round : d.size();
+      v.off = median(
+          {d.begin() + std::ptrdiff_t(k), d.begin() + std::ptrdiff_t(end)});
+      v.gain = std::max(v.gain, v.off), v.loss = std::max(v.loss, -v.off);
+    }
+    v.apart = distance(scene_.cloth(), finer->cloth(), size());
+    if (observer) {
+      v.asked = name_of(m.measure);
+      v.answer = changed_by(*mine, observer->answer(m, *finer), m.measure,
+                            scene_.cloth(), size(), least_energy(v));
+    }
+  } catch (const std::invalid_argument&) {  // no such step
+    v.failed = true;
+  }
+  return v;
+}
+
+Verdict Witness::judge_windows() const {
+  Verdict v = windows_;
+  v.sudden = scene_.cloth().num_edges() != edges_;
+  const double n = double(drifts_.size());
+  double sum = 0, squares = 0;
+  for (double d : drifts_) {
+    sum += d, squares += d * d;
+    v.gain = std::max(v.gain, d), v.loss = std::max(v.loss, -d);
+    if (std::abs(d) > std::abs(v.off)) v.off = d;
+  }
+  // The drift of the rest of the run, unless the windows contradict each other.
+  const double spread = std::sqrt(std::max(0., squares - sum * sum / n));
+  if (n > 1 && std::abs(sum) > spread) v.off = windows * sum;
+  v.gain = std::max(v.gain, v.off), v.loss = std::max(v.loss, -v.off);
+  v.cost = sweeps_ / std::max(1., sweeps_of(scene_));
+  return v;
+}
+
+}  // namespace lab
