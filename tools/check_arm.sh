@@ -26,7 +26,7 @@ same() {  # SCENE GRID STEPS [METHOD DT]...
     failed=$((failed + 1)); echo "other bits by ARM: $*"
   fi
 }
-methods=$(grep -v '^#' lab/charts/methods.csv | cut -d, -f1)
+methods=$(sed -n 's/^ *\.name = "\(.*\)",$/\1/p' lab/methods/*.hpp)
 for method in $methods; do
   same data/scenes/forces.toml data/grid1 50 "$method" 0.0005
 done

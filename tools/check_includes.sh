@@ -41,7 +41,7 @@ lab/charts : lab/advice lab/methods
 lab/try    : course lab/charts
 lab/page   : course tools
 tests      : course lab/try
-tests/crossings : lab/scenes lab/charts
+tests/crossings : lab/scenes lab/methods
 docs/site  : course tools
 '
 # A program in the root may draw, and a test; of all else only these:

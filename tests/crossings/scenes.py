@@ -16,8 +16,8 @@ import oracle
 from oracle import CONTACT, USUAL, Net, Scene
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-METHODS = re.findall(r"^([a-z][a-z0-9-]*),#", (
-    ROOT / "lab/charts/methods.csv").read_text(), re.M)
+METHODS = re.findall(r'\.name = "(.+)"', "".join(
+    path.read_text() for path in sorted((ROOT / "lab/methods").glob("*.hpp"))))
 MESHES = {"sheet", "net", "nodes"}
 # The powers of length and time in what is drawn; the unit of mass is kept.
 UNITS = {word: powers for powers, words in {
