@@ -258,9 +258,9 @@ TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
       "with G in (0, 1], the energy gain tolerated, as auto:0.02\n");
 }
 
-    EXPECT_FALSE(has(success(net + more + r.err.substr(begin, end - begin)).err,
-                     "another energy"));
-  }
+EXPECT_FALSE(has(success(net + more + r.err.substr(begin, end - begin)).err,
+                 "another energy"));
+}
 }
 
 TEST_F(ClothProgram, SaysNothingOfAnEnergyThatIsRoundOff) {

@@ -53,7 +53,7 @@ Requests<Live> Live::make_requests() {
   constexpr auto plain = Requests<Live>::plain,
                  override = Requests<Live>::override,
                  expand = Requests<Live>::expand;
-  // What is asked of a scene is asked of all; but "method" comes next.
+  // A request of a scene is made to all; but "method" comes next.
   for (const auto& r : scene_requests().all) {
     const auto run = [&r](Line& in, Live* live) {
       if (!live) return r.run(in, nullptr);
@@ -68,7 +68,8 @@ Requests<Live> Live::make_requests() {
       live->fit_steps();
     };
     if (r.name != "method")
-      table.all.push_back({r.name, Requests<Live>::Kind(r.kind), run, r.parameter});
+      table.all.push_back(
+          {r.name, Requests<Live>::Kind(r.kind), run, r.parameter});
   }
   // From now on by this method; the step stays.
   table.on("method", plain, [](Live& live, const MethodEntry* m) {

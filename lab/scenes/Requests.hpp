@@ -38,7 +38,7 @@ void read(Line& in, std::vector<T>& all) {
   while (!in.at_end()) read(in, all.emplace_back());
 }
 
-/** What a line of text means that starts with a name, for a @a Target. */
+/** A line of text that starts with a name asks something of a @a Target. */
 template <typename Target>
 struct Requests {
   enum Kind {
