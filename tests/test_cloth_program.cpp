@@ -258,9 +258,104 @@ TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
       "with G in (0, 1], the energy gain tolerated, as auto:0.02\n");
 }
 
-EXPECT_FALSE(has(success(net + more + r.err.substr(begin, end - begin)).err,
-                 "another energy"));
+// test_cloth_restart runs each of them.
+TEST_F(ClothProgram, ListsEveryMethod) {
+  Result list = success("--list-methods");
+  EXPECT_TRUE(has(list.out, "60 frames a second, take verlet"));
+  for (const MethodEntry& m : methods)
+    EXPECT_TRUE(has(list.out, "\n" + std::string(m.info.name) + ' '));
 }
+
+// Newton gives up on a cloth that buckles at a step far too large.
+TEST_F(ClothProgram, EndsWith3WhenAStepCantBeMade) {
+  Result r =
+      run("data/grid1.nodes data/grid1.tets --headless --method "
+          "implicit-midpoint --dt 0.5 --stiffness 1e5");
+  EXPECT_EQ(r.status, 3) << r.out << r.err;
+  EXPECT_TRUE(has(r.err, "; step 1 with dt = 0.5 s, method implicit-midpoint"));
+}
+
+TEST_F(ClothProgram, RefusesOutputsThatCantBeBeforeItRuns) {
+  for (const auto& [option, name] :
+       {std::pair("--csv ", "no/such"), std::pair("--out ", "no/such"),
+        std::pair("--screenshot ", "no/such.png"),
+        std::pair("--record ", "no/such.mp4")}) {
+    EXPECT_EQ(refusal(grid3 + "--headless " + option + path(name)),
+              "cloth: " + path(name) +
+                  ": can't be written (No such file or directory)\n");
+    EXPECT_EQ(files(), std::vector<std::string>{});
+  }
+}
+
+TEST_F(ClothProgram, KeepsTheOldFileWhenTheNewRunFails) {
+  std::string kept = file("kept", "old");
+  run("data/none data/none --headless --csv " + kept);
+  run(grid0 + "--headless --dt 0 --csv " + kept);
+  EXPECT_EQ(contents(kept), "old");
+  run(grid0 + "--headless --t-end 0 --csv " + kept);
+  EXPECT_NE(contents(kept), "old");
+  EXPECT_EQ(run(grid0 + "--headless --out /dev/null").status, 0);
+}
+
+TEST_F(ClothProgram, ExplainsItsOptionsWithUnitsAndDefaults) {
+  Result r = success("--help");
+  EXPECT_TRUE(has(r.out, "--dt FLOAT|auto[:sharp][:G]=0.001"));
+  // Each option once, in lines that fit a terminal.
+  std::istringstream in(r.out);
+  std::set<std::string> options;
+  int examples = 0;
+  for (std::string line; std::getline(in, line);) {
+    EXPECT_LE(line.size(), 80u) << line;
+    if (line.starts_with("  -")) {
+      const std::string name = line.substr(2, line.find(' ', 2) - 2);
+      EXPECT_TRUE(options.insert(name).second) << line;
+    }
+    // The examples are good; they are read only.
+    if (!line.starts_with("  ./cloth ")) continue;
+    ++examples;
+    EXPECT_EQ(run(line.substr(10) + " --dump-config").status, 0) << line;
+  }
+  EXPECT_EQ(examples, 3);
+  EXPECT_GT(options.size(), 40u);
+  // It names what a scene file may: so no option is without a group.
+  const std::string dump = run("--sheet 'nodes 3 3' --dump-config").out;
+  std::istringstream keys(dump);
+  for (std::string line; std::getline(keys, line);) {
+    if (line.starts_with("#")) continue;
+    EXPECT_TRUE(options.count("--" + line.substr(0, line.find(' ')))) << line;
+  }
+}
+
+TEST_F(ClothProgram, NamesTheNearestOptionOfOneThatIsMisspelt) {
+  EXPECT_EQ(refusal(grid0 + "--methd verlet"),
+            "cloth: --methd is not an option: did you mean --method?\n");
+  EXPECT_EQ(refusal("--t_end=3 " + grid0),
+            "cloth: --t_end is not an option: did you mean --t-end?\n");
+  EXPECT_EQ(
+      refusal(grid0 + "--method verlt"),
+      "cloth: --method is verlt, expected a name of --list-methods: did you "
+      "mean verlet?\n");
+  EXPECT_TRUE(has(refusal(grid0 + "--measure conm"), "did you mean com?\n"));
+  EXPECT_EQ(refusal(grid0 + "--mass 3"),
+            "cloth: --mass is not an option: expected density, or masses in a "
+            ".net file\n");
+}
+
+// A remedy is one that was tried.
+TEST_F(ClothProgram, TellsARemedyThatWorksWhereTheEnergyIsWrong) {
+  const std::string net =
+      "--sheet 'nodes 9 9 velocity 0 0 4' --pin 'x 0 y 0' "
+      "--t-end 2 --headless ";
+  for (const char* more : {"--plane 'at 0 0 -50' ", "--damping 1e-7 "}) {
+    const Result r = run(net + more + "--method implicit-euler --dt 0.05");
+    EXPECT_EQ(r.status, 3) << r.err;
+    EXPECT_TRUE(has(r.err, "an error of the method has added "));
+    const std::size_t end = r.err.find(" works: a trial");
+    ASSERT_NE(end, r.err.npos) << r.err;
+    const std::size_t begin = r.err.rfind("; ", end) + 2;
+    EXPECT_FALSE(has(success(net + more + r.err.substr(begin, end - begin)).err,
+                     "another energy"));
+  }
 }
 
 TEST_F(ClothProgram, SaysNothingOfAnEnergyThatIsRoundOff) {

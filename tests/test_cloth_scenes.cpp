@@ -90,28 +90,6 @@ TEST_F(ClothProgram, TheCommandLineWinsOverTheFile) {
           "scene: 20 steps"));
 }
 
-<<<<<<< HEAD
-=======
-TEST_F(ClothProgram, ADumpedSceneIsThatScene) {
-  for (const auto& entry : fs::directory_iterator("data/scenes")) {
-    if (entry.is_directory()) continue;  // failures
-    const std::string scene = entry.path().string() +
-                              mesh_for(entry.path().stem().string()) +
-                              " --gravity 9.80665123";
-    const std::string text = run("--config " + scene + " --dump-config").out;
-    EXPECT_NE(text, "");
-    Result again =
-        success("--config " + file("dump.toml", text) + " --dump-config");
-    EXPECT_EQ(again.out, text) << scene;
-    const std::string end = " --headless --quiet --t-end 0.02 --out ";
-    run("--config " + scene + end + path("a"));
-    run("--config " + path("dump.toml") + end + path("b"));
-    EXPECT_NE(contents(dir / "a"), "") << scene;
-    EXPECT_EQ(contents(dir / "a"), contents(dir / "b")) << scene;
-  }
-}
-
->>>>>>> files
 TEST_F(ClothProgram, SaysWhereASceneFileIsWrong) {
   auto complaint = [this](const std::string& line) {
     const std::string name =

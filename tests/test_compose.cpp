@@ -26,21 +26,6 @@ EdgeData spring(const Cloth& g, unsigned i, unsigned j) {
 
 // ------------------------------------------------------------------- The cloth
 
-<<<<<<< HEAD
-=======
-TEST(Compose, ASheetOfTheUnitSquareIsTheGridOfTheAssignment) {
-  const Cloth sheet = built(with_sheet("nodes 7 7"));
-  Cloth grid;
-  build_cloth(grid, grid_points(7), grid_quads(7), MeshSprings::diagonals);
-  ASSERT_EQ(sheet.num_nodes(), grid.num_nodes());
-  ASSERT_EQ(sheet.num_edges(), grid.num_edges());
-  for (unsigned i = 0; i < grid.num_nodes(); ++i)
-    EXPECT_LT(norm(sheet.node(i).position() - grid.node(i).position()), 1e-15);
-  for (unsigned e = 0; e < grid.num_edges(); ++e)
-    EXPECT_EQ(sheet.edge(e).node1().index(), grid.edge(e).node1().index());
-}
-
->>>>>>> files
 TEST(Compose, EdgesAreTheOnesNamed) {
   const unsigned n = 5, m = 4;
   const auto count = [&](const std::string& edges) {
@@ -71,20 +56,6 @@ TEST(Compose, BendSpringsLieAcrossTwoSidesInALine) {
   EXPECT_NEAR(spring(g, 0, 10).L, 4 / 3., 1e-15);  // along u
 }
 
-<<<<<<< HEAD
-=======
-TEST(Compose, SheetsLieBesideEachOther) {
-  Model m = with_sheet("nodes 3 3");
-  m.sheets.push_back(read_sheet("at 0 0 1 u 0 0 2 nodes 2 4"));
-  Cloth g = built(m);
-  ASSERT_EQ(g.num_nodes(), 9u + 8u);
-  EXPECT_EQ(g.node(9).position(), Point(0, 0, 1));
-  EXPECT_EQ(g.node(16).position(), Point(0, 1, 3));
-  for (Edge e : g.edges())
-    EXPECT_EQ(e.node1().index() < 9, e.node2().index() < 9);
-}
-
->>>>>>> files
 // ---------------------------------------------------------------------- A net
 
 TEST(Compose, ASheetOfOneRowIsARope) {
@@ -200,23 +171,6 @@ TEST(Compose, APinHoldsNodesByPlaceOrIndex) {
 
 // ---------------------------------------------------------------- The material
 
-<<<<<<< HEAD
-=======
-TEST(Compose, MassIsDensityTimesArea) {
-  Model m = with_sheet("u 2 0 0 v 0 0.5 0 nodes 4 6");
-  m.material.density = 0.3;
-  Cloth g = built(m);
-  EXPECT_NEAR(total_mass(g), 0.3 * 1, 1e-14);
-  const double cell = 0.3 / 15;
-  EXPECT_NEAR(g.node(0).value().mass, cell / 4, 1e-15);  // a corner
-  EXPECT_NEAR(g.node(1).value().mass, cell / 2, 1e-15);  // on the rim
-  EXPECT_NEAR(g.node(7).value().mass, cell, 1e-15);      // inside
-  m.material.density.reset();
-  Cloth as_assigned = built(m);
-  EXPECT_NEAR(as_assigned.node(0).value().mass, 1 / 24., 1e-15);
-}
-
->>>>>>> files
 // Both ends of an edge have to be in the box for another K; a node counts by
 // its place at the start. Where two boxes overlap, factors multiply.
 TEST(Compose, RegionsChangeTheirNodesAndEdges) {

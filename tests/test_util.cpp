@@ -115,7 +115,6 @@ TEST(PointTest, ProductsAndNorms) {
 TEST(PointTest, Elements) {
   EXPECT_EQ(Point(4), Point(4, 4, 4));
   EXPECT_EQ(Point(), Point(0));
-<<<<<<< HEAD
   Point a(1, 2, 3);
   const Point& readable = a;
   EXPECT_EQ(a.size(), 3u);
@@ -124,15 +123,6 @@ TEST(PointTest, Elements) {
   EXPECT_EQ(std::vector<double>(a.begin(), a.end()),
             (std::vector<double>{1, 7, 3}));
   // By other names.
-=======
-  EXPECT_EQ(std::vector<double>(a.begin(), a.end()),
-            (std::vector<double>{1, 7, 3}));
-  EXPECT_EQ(a.size(), 3u);
-  std::fill(a.begin(), a.end(), 5);
-  EXPECT_EQ(a, Point(5));
-  a.elem[0] = 1, a.elem[1] = 7, a.elem[2] = 3;  // by other names
-  EXPECT_EQ(a, Point(1, 7, 3));
->>>>>>> files
   EXPECT_EQ(readable.elem[2u], 3);
   EXPECT_EQ(&a.elem[0], &a.x);
   EXPECT_EQ(&a.elem[2l], &a.z);

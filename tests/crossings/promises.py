@@ -326,9 +326,24 @@ def remedy(c: Case) -> Broken:
     return None
 
 
+def tolerance(c: Case) -> Broken:
+    """A tolerance that is said to be kept is kept; only in chaos it is not."""
+    said = re.search(r"^positions to (\S+) m: (kept;|kept to|predictable to)",
+                     c.base.text, re.M)
+    x, truth = c.base.net[0], c.truth if said else None
+    if not said or len(x) != truth.alive.sum() or not c.exact < .01:
+        return None
+    asked, off = float(said[1]), oracle.rms(x - truth.x[truth.alive])
+    if said[2] == "kept;" and off > asked + 3 * truth.bar:
+        return "kept", [f"asked for {asked:g} m, off by {off:.2e} m"]
+    if said[2] != "kept;" and not c.contact and c.exact < 1e-8:
+        return "horizon", [said[0], "and a twin of the motion stays near"]
+    return None
+
+
 PROMISES = {f.__name__: f for f in (
     healthy, sick, end, measure, balance, limit, restart, files, symmetry,
-    remedy)}
+    remedy, tolerance)}
 
 
 def broken(c: Case, promise: str) -> Broken:
