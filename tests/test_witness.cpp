@@ -65,7 +65,7 @@ TEST(Witness, RepeatsTheChangesOfAScene) {
   EXPECT_TRUE(good.whole && good.fine()) << good.text();
   m.t_end = 0.4, m.at = {"0.2 method forward-euler"};
   const Verdict bad = verdict(m, "verlet", 0.005);
-  EXPECT_TRUE(bad.whole && bad.gains()) << bad.text();
+  EXPECT_TRUE(bad.whole && bad.is_off()) << bad.text();
 }
 
 TEST(Witness, HoldsErrorsOfAFastFallAgainstItsWay) {

@@ -109,7 +109,8 @@ def test_advice():
 def test_a_spring_from_both_ends_counts_once():
     with pytest.warns(UserWarning, match="1 spring is listed from both ends"):
         net = mass_spring.Net(PAIR, [[0, 1], [1, 0]], k=50.0, gravity=0.0)
-    assert net.force([[0.0, 0, 0], [3, 0, 0]], np.zeros((2, 3)))[1, 0] == -100
+    x = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])
+    assert net.force(x, np.zeros((2, 3)))[1, 0] == -100
 
 
 @pytest.mark.parametrize("changes, message", [

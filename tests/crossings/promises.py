@@ -330,8 +330,10 @@ def tolerance(c: Case) -> Broken:
     """A tolerance that is said to be kept is kept; only in chaos it is not."""
     said = re.search(r"^positions to (\S+) m: (kept;|kept to|predictable to)",
                      c.base.text, re.M)
-    x, truth = c.base.net[0], c.truth if said else None
-    if not said or len(x) != truth.alive.sum() or not c.exact < .01:
+    if not said or not c.exact < .01:
+        return None
+    x, truth = c.base.net[0], c.truth
+    if len(x) != truth.alive.sum():
         return None
     asked, off = float(said[1]), oracle.rms(x - truth.x[truth.alive])
     if said[2] == "kept;" and off > asked + 3 * truth.bar:
