@@ -26,7 +26,7 @@ namespace {
 void refuses(const auto& read,
              std::initializer_list<std::pair<std::string, std::string>> all) {
   for (const auto& [text, expected] : all) {
-    const auto error = error_of<InputError>([&] { read(text); });
+    const auto error = error_of<InputError>([&, &in = text] { read(in); });
     EXPECT_EQ(error.substr(0, 1 + expected.size()), "f" + expected) << text;
   }
 }

@@ -88,7 +88,7 @@ def test_changes_of_a_scene_and_its_energy(tmp_path):
     file.write_text(text + "at = ['0.5 unpin 0']\n")
     falls = mass_spring.scene(str(file)).run(every=0.5)
     assert falls.x[1, 0, 2] == 0 and falls.x[2, 0, 2] < -0.5
-    with pytest.raises(ValueError, match="at cannot be combined with advice"):
+    with pytest.raises(ValueError, match="at has unpin, which is of one"):
         mass_spring.scene(str(file)).advise()
     file.write_text(text + "at = ['0.5 unpinn 0']\n")
     with pytest.raises(ValueError, match="did you mean unpin"):

@@ -1,6 +1,9 @@
 #include "lab/stepping/Changes.hpp"
 
+#include <stdexcept>
+
 #include "CME212/Util.hpp"
+#include "lab/scenes/KeyValues.hpp"
 #include "lab/stepping/Scene.hpp"
 
 namespace lab {
