@@ -234,14 +234,15 @@ def measure(c: Case) -> Broken:
 
 def balance(c: Case) -> Broken:
     """energy - work + drag is constant where nothing touches, and never
-    rises, as the step goes to 0."""
+    rises, as the step goes to 0; a chosen step may gain 10 %."""
     def off(run: Run) -> float:
         rows = run.csv
         internal = max((rows["kinetic"] + rows["elastic"]).max(), 1e-12)
         return rows["balance"][-1] / internal
 
     def bad(share: float) -> bool:
-        return share > .02 or (share < -.02 and not c.contact)
+        most = .02 if c.fixed else .1
+        return share > most or (share < -most and not c.contact)
 
     if not c.sound or not bad(first := off(c.base)):
         return None
