@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Interrupt.hpp"
-#include "lab/scenes/KeyValues.hpp"
 
 namespace lab {
 

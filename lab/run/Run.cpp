@@ -50,7 +50,7 @@ void Run::start() {
   observer_.restart(o_.model, scene_);
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
   rows_.clear(), written_ = 0;
-  judged_ = false, verdict_ = nullptr;
+  judged_ = false;
   frames_.restart();
   frames_.add(scene_);
   if (!o_.csv.empty()) begin_csv();
@@ -184,9 +184,7 @@ void Run::warn(const std::string& text) {
 void Run::warn_of_length() {
   using CME212::two_digits;
   const double steps = (o_.model.t_end - scene_.time()) / scene_.dt();
-  const Cloth& g = scene_.cloth();
-  const double seconds = steps * evaluations_of(scene_.method()) *
-                         (g.num_nodes() + g.num_edges()) / Scene::trial_work;
+  const double seconds = scene_.work_of(steps) / Scene::trial_work;
   constexpr double hour = 3600, year = 365.25 * 24 * hour;  // [s]
   if (seconds > hour)
     warn(two_digits(steps) + " steps of this dt take about " +
@@ -235,8 +233,8 @@ int Run::finish() {
     print_summary();
     tell_work();
     if (scene_.control()) tell_steps(*scene_.control());
-    if (find_verdict())
-      std::cout << verdict_->text() << '\n';
+    if (const Verdict* said = verdict())
+      std::cout << said->text() << '\n';
     else if (!scene_.failure() && !o_.bounds_error)
       std::cout << "not compared with half of dt\n";
     if (scene_.changes_left() > 0)
@@ -420,17 +418,19 @@ void Run::tell_work() const {
   std::cout << "work: " << text << '\n';
 }
 
-/** What half of the step shows.  @return false if it was not tried */
-bool Run::find_verdict() {
-  if (verdict_ || !scene_.witness() || scene_.failure() || interrupted())
-    return verdict_;
+/** What half of the step shows; null if it was not tried. */
+const Verdict* Run::verdict() const {
+  const Witness* const witness = scene_.witness();
+  if (!witness) return nullptr;
+  if (witness->said() || scene_.failure() || interrupted())
+    return witness->said();
   try {
     const bool asks = o_.model.measure.quantity != Measure::positions;
     const Answer mine = asks ? answer() : Answer();
-    verdict_ = &scene_.witness()->verdict(asks ? &mine : nullptr);
+    witness->verdict(asks ? &mine : nullptr);
   } catch (const Interrupted&) {  // it was not compared
   }
-  return verdict_;
+  return witness->said();
 }
 
 static std::string gain_text(const StepControl& c) {
@@ -440,29 +440,26 @@ static std::string gain_text(const StepControl& c) {
   return out.str();
 }
 
-/** Of steps that are chosen, StepControl tells what it tolerates: a warning is
- * enough. */
-bool Run::wrong() const {
-  return verdict_ && verdict_->wrong() && !scene_.control();
-}
-
 bool Run::judge() {
-  if (find_verdict() && !std::exchange(judged_, true)) {
-    if (wrong()) {
-      std::string text = verdict_->wrong_text() + "; ";
+  const Verdict* const said = verdict();
+  // Of steps that are chosen, StepControl tells what it tolerates: a warning is
+  // enough.
+  const bool wrong = said && said->wrong() && !scene_.control();
+  if (said && !std::exchange(judged_, true)) {
+    if (wrong) {
+      std::string text = said->wrong_text() + "; ";
       try {
         text += scene_.diagnosis().cause_text() + "; ";
       } catch (const Interrupted&) {  // remedy() says so
       }
       warnings_.push_back(text + scene_.remedy());
       std::cerr << "cloth: " << warnings_.back() << '\n';
-    } else if (!o_.quiet && !verdict_->fine()) {
-      warn((verdict_->wrong() ? verdict_->wrong_text()
-                              : verdict_->difference()) +
-           "; " + scene_.remedy());
+    } else if (!o_.quiet && !said->fine()) {
+      warn((said->wrong() ? said->wrong_text() : said->difference()) + "; " +
+           scene_.remedy());
     }
   }
-  return !wrong();
+  return !wrong;
 }
 
 void Run::tell_steps(const StepControl& c) const {

@@ -88,7 +88,6 @@ class Run {
   std::string kept_;            // in words
   double seconds_ = 0;          // until the last step
   bool missed_ = false, told_ = false;
-  const Verdict* verdict_ = nullptr;  // of scene_.witness()
   bool judged_ = false;
   std::vector<std::string> warnings_;
 
@@ -108,8 +107,7 @@ class Run {
   void save();
   void load();
   void go_on_with_csv(std::uint64_t length, std::uint64_t sum);
-  bool find_verdict();
-  bool wrong() const;
+  const Verdict* verdict() const;
   void tell_steps(const StepControl& c) const;
   void tell_work() const;
   void warn(const std::string& text);

@@ -341,15 +341,12 @@ std::unique_ptr<Scene> Scene::branch(double share) const {
   return branch;
 }
 
-/** Has a finer run this energy now, too, to 10 %? It begins in an earlier
- * state.
- */
+/** Has a finer run, from an earlier state, this energy now, too, to 10 %? */
 bool Scene::confirms(const Energies& e) const {
   constexpr double same = 1.1;
   const Scene* kept = witness_ ? witness_->kept() : nullptr;
-  const double cost = 2 * double(steps()) * evaluations_of(method()) *
-                      (cloth().num_nodes() + cloth().num_edges());
-  if (!kept && (changed_ || cost > trial_work)) return false;
+  if (!kept && (changed_ || work_of(2 * double(steps())) > trial_work))
+    return false;
   try {
     const auto other = kept ? kept->branch(1) : finer();
     if (other->time() >= time() || !run_until(*other, time())) return false;

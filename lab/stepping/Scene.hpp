@@ -16,12 +16,6 @@
 
 namespace lab {
 
-/** About how many force evaluations a step of a method costs; an implicit one,
- * with its linear systems, a hundred. */
-inline double evaluations_of(const MethodInfo& m) {
-  return m.sweeps * (m.limit == no_limit ? 100 : 1);
-}
-
 /** The cloth of a model, and what acts on it: what a Scene steps. */
 class SceneParts {
  protected:
@@ -170,6 +164,12 @@ class Scene : private SceneParts, private Stepper {
   std::string remedy() const;
   /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
+  /** About as many as @a steps of its method take; each of an implicit one,
+   * with its linear systems, as a hundred. */
+  double work_of(double steps) const {
+    return steps * method().sweeps * (method().limit == no_limit ? 100 : 1) *
+           (cloth().num_nodes() + cloth().num_edges());
+  }
   /** The scene with the method and step of @a cure: from its start, or from the
    * present state if there was a change since the start. */
   std::unique_ptr<Scene> anew(const Cure& cure) const;

@@ -2,6 +2,7 @@
  * Scene::diagnosis(): why a scene failed, and a cure that works. */
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -45,19 +46,14 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
   try {
     const auto trial = failed.anew(cure);
     const Model& m = trial->model();
-    const double springs =
-        evaluations_of(cure.method.info) *
-        (trial->cloth().num_nodes() + trial->cloth().num_edges());
-    t_end = std::min(t_end, trial->time() + left / springs * cure.dt);
+    t_end = std::min(t_end, trial->time() + left / trial->work_of(1) * cure.dt);
     trial->watch(t_end, true);
     std::optional<Observer> observer;
     if (m.measure.quantity != Measure::positions) observer.emplace(m, *trial);
-    while (!trial->done(t_end)) {
-      trial->step(t_end);
-      if (m.measure.over_time() && observer) observer->look(m, *trial);
-      end_if_interrupted();
-    }
-    if (!trial->check()) return {false, trial->time()};
+    std::function<void()> look;
+    if (observer && m.measure.over_time())
+      look = [&] { observer->look(m, *trial); };
+    if (!run_until(*trial, t_end, look)) return {false, trial->time()};
     const Answer mine = observer ? observer->answer(m, *trial) : Answer();
     if (!trial->witness()) return {true, trial->time()};
     const Verdict& v = trial->witness()->verdict(observer ? &mine : nullptr);

@@ -90,9 +90,10 @@ double least_energy(const Verdict& v) {
 
 }  // namespace
 
-bool run_until(Scene& s, double time) {
+bool run_until(Scene& s, double time, const std::function<void()>& after) {
   while (!s.done(time)) {
-    s.steps_at_once(Scene::guard_interval, time);
+    s.steps_at_once(after ? 1 : Scene::guard_interval, time);
+    if (after) after();
     end_if_interrupted();
   }
   return s.check();
@@ -170,11 +171,9 @@ void Witness::restart() {
   begin_ = scene_.time();
   const Cloth& g = scene_.cloth();
   from_ = center_of_mass(g), edges_ = g.num_edges();
-  const double sweep =
-      evaluations_of(scene_.method()) * (g.num_nodes() + g.num_edges());
+  const double steps = 2 * (t_end_ - begin_) / scene_.dt();
   whole_ = std::isfinite(t_end_) &&
-           (asked_whole_ ||
-            2 * (t_end_ - begin_) / scene_.dt() * sweep < Scene::trial_work);
+           (asked_whole_ || scene_.work_of(steps) < Scene::trial_work);
   if (whole_ && scene_.was_changed()) kept_ = scene_.branch(0.5);
   next_ = 0;
   look_again();
@@ -261,15 +260,15 @@ double Witness::size() const {
   return std::max(side_of(g), double(norm(center_of_mass(g) - from_)));
 }
 
-/** Run @a finer through all looks_.
+/** Run @a finer through all looks_, with @a after as of run_until().
  * @return what the run has more of energy at each, as an error [J] */
-std::vector<double> Witness::repeat(Scene& finer, Verdict& v,
-                                    double& slack) const {
+std::vector<double> Witness::repeat(Scene& finer, Verdict& v, double& slack,
+                                    const std::function<void()>& after) const {
   const double factor = error_factor(scene_.model(), scene_.method());
   std::vector<double> d;
   const Look* before = nullptr;
   for (const Look& run : looks_) {
-    if (!run_until(finer, run.time)) {
+    if (!run_until(finer, run.time, after)) {
       v.failed = true;
       return d;
     }
@@ -318,22 +317,11 @@ Verdict Witness::judge_whole(const Answer* mine) const {
     const auto finer = kept_ ? kept_->branch(1) : scene_.finer();
     std::optional<Observer> observer;
     if (mine) observer.emplace(m, *finer);
-    struct Watch final : SettledReader {
-      Observer& observer;
-      const Scene& scene;
-      Watch(Observer& o, const Scene& s) : observer(o), scene(s) {
-        scene.stepper().tell(this);
-      }
-      ~Watch() { scene.stepper().tell_no_more(this); }
-      void settle(long long, long long) override {
-        observer.look(scene.model(), scene);
-      }
-      double due() const override { return scene.time(); }
-    };
-    std::optional<Watch> each;
-    if (observer && m.measure.over_time()) each.emplace(*observer, *finer);
-    const std::vector<double> d = repeat(*finer, v, v.slack);
-    if (!v.failed && !run_until(*finer, scene_.time())) v.failed = true;
+    std::function<void()> look;
+    if (observer && m.measure.over_time())
+      look = [&] { observer->look(finer->model(), *finer); };
+    const std::vector<double> d = repeat(*finer, v, v.slack, look);
+    if (!v.failed && !run_until(*finer, scene_.time(), look)) v.failed = true;
     v.cost = sweeps_of(*finer) / std::max(1., sweeps_of(scene_));
     if (v.failed) return v;
     const std::size_t round = std::max<std::size_t>(1, d.size() / windows);

@@ -1,6 +1,7 @@
 #pragma once
 /** @file Witness.hpp
  * Witness: judges a run by a second one with half of its step. */
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -135,13 +136,15 @@ class Witness final : public SettledReader {
   double size() const;
   void look_again();
   void window();
-  std::vector<double> repeat(Scene& finer, Verdict& v, double& slack) const;
+  std::vector<double> repeat(Scene& finer, Verdict& v, double& slack,
+                             const std::function<void()>& after = {}) const;
   Verdict judge_whole(const Answer* mine) const;
   Verdict judge_windows() const;
 };
 
-/** Run @a s to @a time [s], interruptibly.  @return false if it failed
- * Throws Interrupted. */
-bool run_until(Scene& s, double time);
+/** Run @a s to @a time [s], interruptibly. Call @a after(), if there is one,
+ * after each step, even if the step failed.  @return false if it failed
+ * Throws Interrupted, and what @a after throws. */
+bool run_until(Scene& s, double time, const std::function<void()>& after = {});
 
 }  // namespace lab
