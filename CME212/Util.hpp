@@ -153,13 +153,16 @@ std::istream& getline_parsed(std::istream& s, T& value) {
   return s;
 }
 
+/** @a text in small letters, those of ASCII. */
+inline std::string lower_case(std::string text) {
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 /** The ending of the file @a path from its last point on, in small letters. */
 inline std::string ending_of(std::string_view path) {
   const auto point = path.find_last_of("./");
   if (point == path.npos || path[point] == '/') return "";
-  std::string ending(path.substr(point));
-  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
+  return lower_case(std::string(path.substr(point)));
 }
 
 }  // namespace CME212

@@ -80,7 +80,7 @@ TEST(ParseNodes, TakesVelocitiesInAllLinesOrInNone) {
            {"1 2 3 4 5 6\n\n1 2 3", ":3: 3 values in the line" + six},
            {"1 2 3 4 nan 6", ":1: a number is not finite" + either},
            {"1 2 3 4 5 6\n1 2 3 4 x 6", ":2: 'x' is not a number" + six},
-           {"# none\n", ": nothing in the file" + either}});
+           {"# none\n", ":1: nothing in the file" + either}});
 }
 
 TEST(ParseQuads, TakesFourIndicesALine) {

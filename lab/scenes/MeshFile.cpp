@@ -32,9 +32,10 @@ Net parse_nodes(std::string_view text, const std::string& file) {
                      (columns == 0 ? ", and three of a velocity [m/s] or none"
                                    : "");
   };
-  each_line(text, file, use, expected);
+  const std::size_t lines = each_line(text, file, use, expected);
   if (columns == 0)
-    throw InputError(file, 0, "nothing in the file, expected " + expected());
+    throw InputError(file, lines,
+                     "nothing in the file, expected " + expected());
   return mesh;
 }
 

@@ -2,7 +2,6 @@
  * Readers of nets in formats that may be binary: STL, PLY. */
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -88,10 +87,7 @@ void parse_stl(std::string_view text, const std::string& file, Builder& b) {
   }
   bool is_stl = false, ends = false;
   const auto use = [&](Words w) {
-    std::string name(w[0]);
-    std::ranges::transform(name, name.begin(), [](unsigned char c) {
-      return char(std::tolower(c));
-    });
+    const std::string name = CME212::lower_case(std::string(w[0]));
     if (!std::exchange(is_stl, true) && name != "solid")
       fail(quoted(w[0]) + " begins the file");
     if (name == "vertex") corner(point(w, 1));

@@ -1,7 +1,6 @@
 #include "lab/scenes/Words.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -326,8 +325,9 @@ constexpr struct {
 
 const MethodEntry* method_named(std::string_view name, std::string& hint) {
   if (const MethodEntry* method = find_method(name)) return method;
-  std::string lower(name);
-  for (char& c : lower) c = c == '_' || c == ' ' ? '-' : char(std::tolower(c));
+  std::string lower = CME212::lower_case(std::string(name));
+  for (char& c : lower)
+    if (c == '_' || c == ' ') c = '-';
   std::vector<std::string_view> names;
   for (const MethodEntry& m : methods) names.push_back(m.info.name);
   for (const auto& other : other_names) {
