@@ -10,6 +10,7 @@
 #include "lab/stepping/Accuracy.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "lab/stepping/Separation.hpp"
+#include "tests/Built.hpp"
 #include "tests/Says.hpp"
 
 using namespace lab;
@@ -17,19 +18,13 @@ using namespace lab;
 namespace {
 
 Model sheet(unsigned n, double t_end) {
-  Model m;
-  m.sheets.resize(1), m.sheets[0].nodes = {n, n};
-  m.t_end = t_end;
+  Model m = square(n, t_end);
   m.method = &table::rkn64;
   m.step = {.dt = std::min(1 / 30., t_end)};
   return m;
 }
-/** Hangs by two corners, without drag: it buckles. */
-Model hanging(unsigned n, double t_end) {
-  Model m = sheet(n, t_end);
-  m.pins = {Pin{0, 0, {}, {}, {}}, Pin{1, 0, {}, {}, {}}};
-  return m;
-}
+/** It buckles. */
+Model hanging(unsigned n, double t_end) { return hung(sheet(n, t_end)); }
 
 Track track_of(const Model& m, const Point& off = Point(), double from = 0) {
   Scene scene(m);

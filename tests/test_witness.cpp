@@ -10,24 +10,14 @@
 #include "lab/scenes/KeyValues.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "lab/stepping/Trial.hpp"
+#include "tests/Built.hpp"
 #include "tests/Says.hpp"
 
 using namespace lab;
 
 namespace {
 
-Model sheet(unsigned n, double t_end) {
-  Model m;
-  m.sheets.resize(1), m.sheets[0].nodes = {n, n};
-  m.t_end = t_end;
-  return m;
-}
-/** Hangs by two corners, without drag. */
-Model hanging(unsigned n, double t_end) {
-  Model m = sheet(n, t_end);
-  m.pins = {Pin{0, 0, {}, {}, {}}, Pin{1, 0, {}, {}, {}}};
-  return m;
-}
+Model hanging(unsigned n, double t_end) { return hung(square(n, t_end)); }
 
 /** The verdict on a run of @a m.  @param end of the run for the witness */
 Verdict verdict(Model m, const char* method, double dt, double end = 0) {
@@ -43,7 +33,7 @@ Verdict verdict(Model m, const char* method, double dt, double end = 0) {
 TEST(Witness, FindsNothingWrongInSoundRuns) {
   for (const std::string part :
        {"", "wind", "drag", "floor", "pin", "tear", "ball", "loose"}) {
-    Model m = part == "loose" ? sheet(7, 1) : hanging(7, 1);
+    Model m = part == "loose" ? square(7, 1) : hanging(7, 1);
     if (part == "wind") m.wind = Wind{Point(2, 0, 5)}, m.damping = 0.05;
     if (part == "drag") m.damping = 0.1;
     if (part == "floor") m.planes = {{.at = Point(0, 0, -0.2), .motion = {}}};
@@ -69,7 +59,7 @@ TEST(Witness, RepeatsTheChangesOfAScene) {
 }
 
 TEST(Witness, HoldsErrorsOfAFastFallAgainstItsWay) {
-  Model m = sheet(3, 2);
+  Model m = square(3, 2);
   m.sheets[0].velocity = Point(0, 0, -100);
   EXPECT_TRUE(verdict(m, "verlet", 0.01).fine());
 }
@@ -92,7 +82,7 @@ TEST(Witness, SeesWhatTheMethodMadeOrLost) {
   EXPECT_TRUE(verdict(m, "xpbd", 0.0333).gains());
   // Whatever is named that does not act.
   for (int part : {0, 1, 2}) {
-    Model thrown = sheet(9, 2);
+    Model thrown = square(9, 2);
     thrown.sheets[0].velocity = Point(0, 0, 4);
     thrown.pins = {Pin{0, 0, {}, {}}};
     if (part == 1) thrown.planes = {{.at = Point(0, 0, -50), .motion = {}}};
@@ -111,7 +101,7 @@ TEST(Witness, SeesWhatTheMethodMadeOrLost) {
 TEST(Witness, ToleratesVelocitiesThatAreAStepEarly) {
   EXPECT_TRUE(verdict(hanging(5, 0.02), "symplectic-euler", 0.004).fine());
   EXPECT_TRUE(verdict(hanging(5, 0.02), "implicit-euler", 0.004).is_off());
-  EXPECT_TRUE(verdict(sheet(4, 0.5), "symplectic-euler", 0.01).fine());
+  EXPECT_TRUE(verdict(square(4, 0.5), "symplectic-euler", 0.01).fine());
 }
 
 // A run without an end is looked at in windows, at a quarter of its cost.
@@ -140,7 +130,7 @@ TEST(Witness, VouchesForForcesAtRestByEveryMethod) {
     const bool has_limit = std::isfinite(method.info.limit);
     if (method.info.limit == 0) continue;  // needs a tiny step
     for (const bool lies : {false, true}) {
-      Model m = sheet(5, 3);
+      Model m = square(5, 3);
       m.material.density = 0.2;
       m.material.modulus = has_limit ? 100 : 1e5;
       m.material.drag = 2;
@@ -171,7 +161,7 @@ TEST(Witness, VouchesForForcesAtRestByEveryMethod) {
 // The energy of a sheet that the wind blows comes from no start, no gravity and
 // no pin.
 TEST(Guard, LetsTheWindBlow) {
-  Model m = sheet(3, 1);
+  Model m = square(3, 1);
   m.pins = {Pin{0, {}, {}, {}, {}}};
   m.damping = 0.05, m.gravity = 0;
   m.wind = Wind{Point(0, 0, 5)};

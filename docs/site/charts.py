@@ -1,5 +1,5 @@
-"""Pictures of the site: photographs as WebP; charts packed
-into their page, where site.js unpacks them."""
+"""Pictures of the site: photographs as WebP; charts packed into their page,
+where site.js unpacks them."""
 import base64
 import gzip
 import pathlib
