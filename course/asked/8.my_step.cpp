@@ -39,7 +39,7 @@ struct FarNet : Net {
   mutable Last pins_, forces_;
 };
 static void answer_exactly(const char* what, const Trial& trial) {
-  const Bodies exact = trial.exact(8000);
+  const Bodies exact = trial.exact(2000);
   for (int i = 0; i < Net::size; ++i)
     answer(what, exact.x[i], trial.error_of_euler(exact) / 2);
 }

@@ -33,6 +33,12 @@ MACRO = re.compile(rf"(?:#|%:|\?\?=){SPACE}define{SPACE}([A-Za-z_]\w*)")
 DENIED = re.compile(r"fatal error: (.*): Permission denied$", re.MULTILINE)
 STANDARD = re.compile(rb"^[ \t]*#[ \t]*include[ \t]*<([\w./+-]+)>",
                       re.MULTILINE)
+# A compiler or linker that finds a fault names its place; memory that a source
+# needs is the source's. Else the machine is at fault: its disk, who kills it.
+PLACE = re.compile(r"^\S+:\d+(?::\d+)?: .*error|undefined (?:reference|symbol)"
+                   r"|multiple definition|duplicate symbol|out of memory"
+                   r"|memory exhausted", re.MULTILINE)
+UNWRITTEN = re.compile(r"fatal error: (?:error writing to|can.t write)", re.I)
 # Assembler written in the source, as it appears in the compiler's output.
 ASSEMBLER = re.compile(rb"^#APP\n.*?^#NO_APP\n", re.MULTILINE | re.DOTALL)
 BORDER = re.compile(rb"^#(?:NO_)?APP\b", re.MULTILINE)
@@ -150,8 +156,13 @@ class Sources:
             "/usr", "/lib", "/lib64", "/bin", "/etc/alternatives",
             "/etc/ld.so.cache", "/proc/self", *self.own, self.folder]),
             *flags("--write", [self.built, "/dev/null"])]
-        return sandbox.run_compiler(jail, [str(word) for word in command],
-                                    self.source, self.built, limits)
+        for _ in range(2):
+            done = sandbox.run_compiler(jail, [str(word) for word in command],
+                                        self.source, self.built, limits)
+            if done.stopped or not done.code or blames_source(done.output):
+                return done
+        raise once.KitError("the compiler fails without a fault in a source: "
+                            + self.plain(done.output).strip()[-200:])
 
     def plain(self, text: str) -> str:
         """Without the names of this machine's folders."""
@@ -261,6 +272,11 @@ class Room(Sources):
                            (self.kit.include, "")):
             text = text.replace(f"{path}/", name)
         return super().plain(text)
+
+
+def blames_source(output: str) -> bool:
+    """Does a compiler that failed name a fault of what it read?"""
+    return bool(PLACE.search(output)) and not UNWRITTEN.search(output)
 
 
 def flags(option: str, values: Iterable) -> list[str]:

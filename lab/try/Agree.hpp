@@ -119,6 +119,7 @@ inline void agree() {
     by_table(other, table, .25 + k * h, h);
   }
   put("slow", state(own)), put("slow", state(other));
+  if (agrees_at(usual)) put("usual", {});
   for (const auto& [name, value] : usual) sweep(name, 1000);
   for (const char* name : {"speed", "force", "length", "K", "dt", "mass"})
     sweep(name, 1e-7);
@@ -150,7 +151,13 @@ inline void agree() {
   }
   World far = tangle();
   constexpr double step = .25 * 2 / 5.4;
-  for (int k = 0; k < 20000; ++k)
+  // A motion that grows is compared while both ways can be computed.
+  auto is_small = [&far] {
+    const Numbers s = state(far);
+    return std::all_of(s.begin(), s.end(),
+                       [](double x) { return std::abs(x) < 1e100; });
+  };
+  for (int k = 0; k < 20000 && is_small(); ++k)
     if (!agrees(far, k * step, step)) {
       put("far", {k * step});
       break;

@@ -16,6 +16,16 @@ NUMBERS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh",
 FULL, HALF = .25, .125      # the steps of the trace
 NEVER_ASKS = ("it never asks for the force", "Call force(n, t) for each node "
               "and add dt/m times it to the velocity.")
+IGNORES_DT = (
+    "it ignores dt: two steps whose dt differ by 1 % end at the same place",
+    "Advance by dt, whatever it is: fixed substeps of h are right only where "
+    "dt is a multiple of h.")
+CUTS_DT = (
+    f"it cuts dt: a step of {HALF} s and one that is longer by 1 % end at the "
+    "same place", "Advance by dt, whatever it is: who calls the step has to "
+    "know how far it went.")
+LOOKS = ("it looks at the springs itself, beside the forces: an implicit or "
+         "position-based step")
 FRACTIONS = {(p / q): f"{p}/{q}" for q in (8, 6, 4, 3, 2) for p in range(1, q)}
 
 
@@ -72,20 +82,40 @@ def counts(events: list[Event]) -> Faults:
     return [] if asked[0] else [NEVER_ASKS]
 
 
+def beside(reads: list[list[float]], calls: int, half_calls: int) -> str:
+    """What a step is that does not follow from the forces it asks for. reads:
+    states after a step of two nodes that fly apart, with a soft spring, with a
+    stiff one, with none. Calls of the force: of a step and of half of it."""
+    soft, stiff, none = reads
+    if soft != stiff:
+        return LOOKS
+    if soft[9] < none[9]:   # the speed of the second
+        return ("it brakes nodes along the springs itself, beside the forces: "
+                "dashpots of its own")
+    if soft != none:
+        return "it looks at the springs itself, beside the forces"
+    if calls != half_calls:
+        return (f"it makes substeps: it asks for {calls} forces in a step of "
+                f"{FULL} s, for {half_calls} in one of {HALF} s")
+    return "it is no fixed sum of the forces that it asks for"
+
+
 def springs(rows: list[list[float]]) -> tuple[str, Faults, list[str]] | None:
     """(what it is, faults, notes) of a step that moves the ends of springs
     itself, whether in one go or so that a larger K moves them by less than
     in proportion; else None. rows: those of same() in probe.cpp."""
-    soft, stiff, short, shortest = rows
+    soft, stiff, short, shortest, longer = rows
     if max(abs(soft[2]), abs(soft[3])) < 1e-12 or (
             abs(stiff[2] - 4 * soft[2]) < 1e-3 * abs(stiff[2])):
         return None
     found, notes = [], []
-    words = ("it looks at the springs itself, beside the forces: an implicit "
-             "or position-based step")
+    words = LOOKS
     if abs(shortest[2]) > .1 * abs(stiff[2]):
-        words = ("it is position-based: it moves the ends of each spring to "
-                 "its rest length itself")
+        ratio = (1 + shortest[3] - shortest[2]) / .7
+        words = ("it is position-based: it moves the ends of each spring " + (
+            f"itself, to {ratio:.3g} times its rest length, if it is longer"
+            if abs(longer[2]) < 1e-9 else "to its rest length itself"
+            if ratio < 1.001 else "towards its rest length itself"))
         if near(short[2], shortest[2]):
             words += ", whatever K is"
         notes.append(

@@ -33,6 +33,8 @@ class Verdict:
     order: int | None = None
     one_by_one: bool = False    # a force sees some nodes moved, others not
     calls: int = 0              # of the force for a node, in a step
+    half_calls: int = 0         # the same of half a step
+    ignores_dt: bool = False
     symmetric: bool = False
     symplectic: bool = False
     energy: tuple = (0, "")     # gained in a long run, as a share; words
@@ -92,7 +94,9 @@ def trace(verdict: Verdict, where: str, lines: Lines,
         held, notes = faults.constraint(runs)
         verdict.later += held
         verdict.notes += notes
-    verdict.calls = sum(e.what == "call" and e.node == 0 for e in base)
+    verdict.calls, verdict.half_calls = (
+        sum(e.what == "call" and e.node == 0 for e in runs[h, -1])
+        for h in (faults.FULL, faults.HALF))
 
 
 def keeps_state(where: str, same: Numbers, random: str) -> None:
@@ -170,8 +174,15 @@ def differs(agree: Numbers) -> str:
 def identify(verdict: Verdict, same: Numbers, agree: Numbers) -> None:
     """Compare with the known methods, by table and by runs."""
     unchanged(verdict, same)
+    long, short = (distance(*same["dt"][k:k + 2]) == 0 for k in (0, 2))
+    verdict.ignores_dt = long and short
+    if long:
+        verdict.faults.insert(
+            0, faults.IGNORES_DT if short else faults.CUTS_DT)
     t = verdict.table
     off = distance(*agree["slow"]) if t else math.inf
+    if t and off >= 1e-9 and "usual" in agree:
+        verdict.differs = differs(agree)
     raw = verdict.data["raw"]
     verdict.evaluations = verdict.calls
     springs = faults.springs(same["spring"])
@@ -181,16 +192,17 @@ def identify(verdict: Verdict, same: Numbers, agree: Numbers) -> None:
                                   if fault != faults.NEVER_ASKS]
         verdict.notes += notes
         verdict.name = verdict.is_a.split(":")[0]
-        verdict.table = None
+        verdict.table, verdict.differs = None, ""
         return
-    if t is None or off >= 1e-9:
+    if t is None or off >= 1e-9 and not verdict.differs:
         if not verdict.faults and off < 1e-5:
             verdict.faults.append((
                 "it computes in single precision, with errors of about 1e-7",
                 "Use double, not float."))
         elif not verdict.faults:
-            verdict.is_a = ("it looks at the springs itself, beside the "
-                            "forces: an implicit or position-based step")
+            verdict.is_a = faults.beside(
+                same["reads"], verdict.calls, verdict.half_calls)
+            verdict.name = verdict.is_a.split(":")[0]
         verdict.table = None
         return
     verdict.evaluations = t.stages - t.reuses()
@@ -371,7 +383,9 @@ def limits(verdict: Verdict, numbers: Numbers) -> None:
         k = end
     verdict.limit, verdict.weak = limit, weak
     verdict.data["line"] = numbers["line"]
-    if limit == 0:
+    if verdict.ignores_dt:
+        words = "not judged: the step ignores dt"
+    elif limit == 0:
         words = "none: an oscillation grows at any step, without drag"
     elif limit == math.inf:
         words = "none found: stable for all dt omega up to 12"
@@ -418,11 +432,12 @@ def tearing(verdict: Verdict, numbers: Numbers) -> None:
     runs: dict[float, dict[float, Vector]] = {}
     for removing, mass, *state in numbers["torn"]:
         runs.setdefault(removing, {})[mass] = state
-    whole = runs.pop(0)
+    whole, last = runs.pop(0), runs.pop(-1)
+    by_order = any(distance(whole[m], last[m]) > 1e-12 for m in whole)
     mixed = any(m not in torn or distance(whole[m], torn[m]) > 1e-12
                 for torn in runs.values() for m in whole if m != 100)
     words = "the others move as if nothing had been removed"
-    if mixed and verdict.one_by_one:
+    if mixed and by_order:
         words = "not judged: the order of the nodes changes the motion"
     elif mixed:
         words = "the nodes that stay get positions or velocities of others"

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -144,16 +145,36 @@ void same() {
     if (time == 1) run(w, 7, .125, 1);
   }
   // A stretched spring between nodes on which no force acts: who moves it?
-  for (const double h : {.125, 1. / 1024})
-    for (const double K : {4., 16.}) {
-      World w;
-      w.add(Point(2, 0, 0), Point(), 1), w.add(Point(3, 0, 0), Point(), 3);
-      w.spring(0, 1, K, .7);
-      w.walls = {0, 1};
-      advance(w, 0, h);
-      const Numbers x = positions(w);
-      put("spring", {h, K, x[0] - 2, x[3] - 3, x[2], double(w.calls)});
-    }
+  auto pair = [](double speed, double K, double L) {
+    World w;
+    w.add(Point(2, 0, 0), Point(), 1);
+    w.add(Point(3, 0, 0), Point(speed, 0, 0), 3);
+    if (L > 0) w.spring(0, 1, K, L);
+    w.walls = {0, 1};
+    return w;
+  };
+  for (const auto& [h, K, L] : {std::array{.125, 4., .7},
+                                {.125, 16., .7},
+                                {1. / 1024, 4., .7},
+                                {1. / 1024, 16., .7},
+                                {1. / 1024, 16., .95}}) {
+    World w = pair(0, K, L);
+    advance(w, 0, h);
+    const Numbers x = positions(w);
+    put("spring", {h, K, x[0] - 2, x[3] - 3, x[2], double(w.calls)});
+  }
+  // The nodes fly apart: who looks at K, who at the spring?
+  for (const auto& [K, L] : {std::pair{4., 1.}, {16., 1.}, {4., 0.}}) {
+    World w = pair(1, K, L);
+    advance(w, 0, .125);
+    put("reads", state(w));
+  }
+  // Steps of dt that differ by 1 %: do they end at different places?
+  for (const double h : {.125, .12625, .01, .0101}) {
+    World w = tangle();
+    advance(w, 0, h);
+    put("dt", state(w));
+  }
 }
 
 // ---- order: problems with exact solutions, those of orders.py
@@ -295,15 +316,21 @@ void limits() {
 // ---- contact: pins that move, a floor, removal
 
 /** Five free masses and springs. The node of mass 100, joined to none, goes in
- * the third step, at call @a removing of the constraint (0: it stays). Writes
- * "torn removing mass state", as an index may change.
+ * the third step, at call @a removing of the constraint (0: it stays; -1: it
+ * does, and is the last node). Writes "torn removing mass state", as an index
+ * may change.
  * @return calls of the constraint in that step */
 int torn(int removing) {
   World w;
-  w.add(Point(9, 9, 9), Point(0, 1, 0), 100);
-  for (unsigned i = 0; i < 5; ++i)
+  auto loose = [&] { w.add(Point(9, 9, 9), Point(0, 1, 0), 100); };
+  const unsigned first = removing >= 0;
+  if (first) loose();
+  for (unsigned k = 0; k < 5; ++k) {
+    const unsigned i = first ? k : 4 - k;
     w.add(Point(.3 * i, .2 + .1 * i * i, .1), Point(0, .1 * i, .2), 1 + i);
-  for (unsigned i = 1; i < 5; ++i) w.spring(i, i + 1, 20, .3);
+  }
+  for (unsigned i = first; i < 4 + first; ++i) w.spring(i, i + 1, 20, .3);
+  if (!first) loose();
   int step = 0, called = 0;
   w.hold = [&](GraphType& g, double) {
     if (step == 2 && ++called == removing)
@@ -341,6 +368,7 @@ void contact() {
   refine("still", 0, .7, 16, 1 << 13, [] { return swinging(false); });
   refine("pins", 0, .7, 16, 1 << 13, [] { return swinging(true); });
   refine("ball", 0, .4, 64, 1 << 13, falling);
+  torn(-1);
   const int last = torn(0);
   if (last > 0) torn(last);
   if (last > 1) torn(1);

@@ -23,6 +23,11 @@ ADVICE = {
     "force for them, which is Verlet.",
     "it is position-based": "How stiff it is follows from dt and the number of "
     "iterations: XPBD adds the compliance 1/(K dt^2), so that K counts.",
+    "it brakes nodes along the springs itself, beside the forces": "Let the "
+    "force have the dashpots, as it has the springs: then each method has "
+    "them.",
+    "it makes substeps": "Let who calls the step choose dt: substeps hide what "
+    "a step costs.",
     "RK4": "It loses energy in long runs: for a cloth without drag PEFRL has "
     "the same order for the same work and keeps the energy.",
     "Yoshida 4": "Its long step back costs accuracy and stability: PEFRL takes "

@@ -14,7 +14,9 @@ import report
 import teacher
 from panels import find_matplotlib
 from results import ChartError
-from workshop import BadInput, progress
+from workshop import BadInput, progress  # it knows the way to course/kit
+
+from once import KitError
 
 
 def main() -> int:
@@ -38,7 +40,7 @@ def main() -> int:
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except (BadInput, ChartError) as error:
+    except (BadInput, ChartError, KitError) as error:
         print(error, file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
