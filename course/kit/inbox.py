@@ -5,19 +5,25 @@
 
 Moodle names a submission NAME_NUMBER_assignsubmission_file..., Canvas
 nameNUMBER_NUMBER_FILE-ATTEMPT.zip: DIR gets a folder NAME_NUMBER for each
-student, with the files of the last attempt; `make class DIR=DIR OUT=GRADES`
-grades it. SHEET is the CSV file that the platform gives; COLUMN of it gets the
+student, with the files of the last attempt: of files of one name, and of zips,
+the last. `make class DIR=DIR OUT=GRADES` grades it. What can't be taken is said. SHEET is the CSV file that the platform gives; COLUMN of it gets the
 points of the student whose NUMBER ends the cell in its column ID, else in its
 first. Exit status: 0 done, 2 bad input, and then nothing was written."""
+import contextlib
 import csv
+import errno
 import io
 import pathlib
 import re
+import shutil
 import sys
+import tempfile
 import zipfile
-import zlib
+
+from submission import shown
 
 LARGEST = 10_000_000    # bytes of a submission
+MOST = 1000             # members of a zip
 MOODLE = re.compile(r"(?P<name>[^/]+_\d+)_assignsubmission_[a-z]+[_/]*"
                     r"(?P<file>.*)")
 CANVAS = re.compile(r"(?P<name>[^/_]+)(?P<late>_LATE)?_(?P<number>\d+)_\d+_"
@@ -36,14 +42,20 @@ def files_in(name: str, content: bytes) -> Files:
         return {name: content} if name.endswith(TAKEN) else {}
     with zipfile.ZipFile(io.BytesIO(content)) as packed:
         members = [m for m in packed.infolist() if m.filename.endswith(TAKEN)]
+        if len(members) > MOST:
+            raise InboxError(f"it holds more than {MOST} sources")
         if sum(m.file_size for m in members) > LARGEST:
             raise InboxError(f"it unpacks to more than {LARGEST} bytes")
         return {m.filename: packed.read(m) for m in members}
 
 
+def skip(what: str, why: object) -> None:
+    print(f"{shown(what)}: nothing is taken from it: {shown(str(why))}")
+
+
 def read(path: str) -> dict[str, Files]:
-    """{student: files}, those of a later attempt in place of earlier ones."""
-    found: dict[str, dict[tuple[str, int], Files]] = {}
+    """{student: files}, those of the last attempt."""
+    last: dict[str, dict[str, tuple[int, Files]]] = {}
     with zipfile.ZipFile(path) as packed:
         for member in (m for m in packed.infolist() if not m.is_dir()):
             if it := MOODLE.fullmatch(member.filename):
@@ -52,32 +64,60 @@ def read(path: str) -> dict[str, Files]:
                 student = f"{it['name']}_{it['number']}"
                 file, attempt = it["file"] + it["end"], int(it["attempt"] or 0)
             else:
-                raise InboxError(f"{path}: '{member.filename}' is named "
+                raise InboxError(f"{path}: '{shown(member.filename)}' is named "
                                  "neither as by Moodle nor as by Canvas")
-            taken = found.setdefault(student, {})
+            taken = last.setdefault(student, {})
             try:
                 if member.file_size > LARGEST:
                     raise InboxError(f"it has more than {LARGEST} bytes")
-                taken[file, attempt] = files_in(file, packed.read(member))
-            except (InboxError, zipfile.BadZipFile, zlib.error,
-                    RuntimeError) as error:     # as of one with a password
-                print(f"{member.filename}: nothing is taken from it: {error}")
-    return {student: {name: content for _, files in sorted(
-        all_of.items(), key=lambda one: one[0][1]) for name, content
-        in files.items()} for student, all_of in found.items()}
+                files = files_in(file, packed.read(member))
+            except Exception as error:  # of a stranger's file, whatever it is
+                skip(member.filename, error)
+                files = {}
+            what = ".zip" if file.endswith(".zip") else file
+            if attempt >= taken.get(what, (0, {}))[0]:
+                taken[what] = attempt, {
+                    **(taken[what][1] if taken.get(what, (-1, {}))[0] == attempt
+                       else {}), **files}
+    return {student: {name: content for _, files in uploads.values()
+                      for name, content in files.items()}
+            for student, uploads in last.items()}
+
+
+def write(folder: pathlib.Path, files: Files) -> None:
+    """The files of a student; OSError if they can't stand beside each other."""
+    folder.mkdir()
+    for name, content in files.items():
+        to = folder / name
+        if folder.resolve() not in to.resolve().parents:
+            skip(f"{folder.name}: {name}", "it lies outside of its folder")
+            continue
+        to.parent.mkdir(parents=True, exist_ok=True)
+        to.write_bytes(content)
 
 
 def unpack(path: str, out: str) -> None:
     students, folder = read(path), pathlib.Path(out)
-    folder.mkdir(parents=True)
-    for student, files in students.items():
-        (folder / student).mkdir()
-        for name, content in files.items():
-            to = folder / student / name
-            if (folder / student).resolve() in to.resolve().parents:
-                to.parent.mkdir(parents=True, exist_ok=True)
-                to.write_bytes(content)
-    print(f"{len(students)} submissions in {out}")
+    if folder.exists():
+        raise InboxError(f"{out} exists: DIR is a folder that is new")
+    count = 0
+    with tempfile.TemporaryDirectory(dir=folder.absolute().parent,
+                                     prefix=".new-") as name:
+        new = pathlib.Path(name) / "students"
+        new.mkdir()
+        for student, files in students.items():
+            try:
+                write(new / student, files)
+                count += 1
+            except OSError as error:
+                if error.errno == errno.ENOSPC:
+                    raise
+                shutil.rmtree(new / student, ignore_errors=True)
+                skip(student, error.strerror)
+                with contextlib.suppress(OSError):
+                    (new / student).mkdir()     # a row of the class, still
+        new.rename(folder)
+    print(f"{count} submissions in {out}")
 
 
 def marks(grades: str, sheet: str, column: str) -> None:

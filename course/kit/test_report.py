@@ -64,12 +64,26 @@ class Inbox(unittest.TestCase):
             "Bo_102_assignsubmission_file/Graph.hpp": "h"}),
             {"Ann Lee_101/hw2/Graph.hpp": "g", "Bo_102/Graph.hpp": "h"})
         one, two, three = (self.zipped({"Graph.hpp": c}) for c in "123")
+        one = self.zipped({"old.hpp": "", "Graph.hpp": "1"})
         self.assertEqual(self.unpacked({
             "leeann_101_9001_hw2.zip": one,
             "leeann_LATE_101_9003_hw2-2.zip": three,
             "leeann_101_9002_hw2-1.zip": two,
             "bo_102_9004_hw2.zip": "", "cy_103_9_a.hpp": "c" * 11_000_000}),
             {"leeann_101/Graph.hpp": "3"})
+        self.assertEqual(self.unpacked({
+            "ann_1_2_Graph.hpp": "old", "ann_1_3_Graph-1.hpp": "new",
+            "ann_1_4_mine.hpp": "kept"}),
+            {"ann_1/Graph.hpp": "new", "ann_1/mine.hpp": "kept"})
+        # What nobody can write or read is its student's loss alone.
+        broken = bytearray(self.zipped({"a.hpp": "abc"}))
+        broken[8] = broken[broken.index(b"PK\1\2") + 10] = 12    # bzip2
+        self.assertEqual(self.unpacked({
+            "ann_1_2_hw2.zip": bytes(broken), "bo_2_2_hw2.zip": self.zipped({
+                "a.hpp": "", "a.hpp/b.hpp": ""}), f"cy_3_2_{'c' * 300}.hpp": "",
+            f"{'d' * 300}_4_2_a.hpp": "", "ed_5_2_a.hpp": "e",
+            "fay_6_2_hw2.zip": self.zipped({
+                f"{n}.hpp": "" for n in range(1001)})}), {"ed_5/a.hpp": "e"})
         self.assertIn("named neither as by Moodle", self.unpacked({"x": ""}))
 
     def test_points_go_into_the_sheet(self):
