@@ -6,7 +6,8 @@
 Moodle names a submission NAME_NUMBER_assignsubmission_file..., Canvas
 nameNUMBER_NUMBER_FILE-ATTEMPT.zip: DIR gets a folder NAME_NUMBER for each
 student, with the files of the last attempt: of files of one name, and of zips,
-the last. `make class DIR=DIR OUT=GRADES` grades it. What can't be taken is said. SHEET is the CSV file that the platform gives; COLUMN of it gets the
+the last. What can't be taken is said; `make class DIR=DIR OUT=GRADES` grades
+it. SHEET is the CSV file that the platform gives; COLUMN of it gets the
 points of the student whose NUMBER ends the cell in its column ID, else in its
 first. Exit status: 0 done, 2 bad input, and then nothing was written."""
 import contextlib

@@ -233,21 +233,21 @@ for text in json.load(sys.stdin):
             ["check_near", "hold", "static_cast"])
 
     def test_a_compiler_blames_a_source_or_fails_by_itself(self):
+        disk = "No space left on device"
         for said in (
-                "Graph.hpp:3:2: error: #error No space left on device",
-                "Graph.hpp:1:10: fatal error: a.hpp: No such file or directory",
+                f"Graph.hpp:3:2: error: #error {disk}",
+                "Graph.hpp:1:10: fatal error: a.hpp: No such file",
                 "mine.hpp:9:1: internal compiler error: Segmentation fault",
                 "ld: unit1.s:(.text+0x5): undefined reference to `f()'",
                 "wasm-ld: error: a.o: undefined symbol: f()",
                 "cc1plus: out of memory allocating 65536 bytes"):
             self.assertTrue(build.blames_source(said), said)
         for said in (
-                "", "g++: fatal error: Killed signal terminated program cc1plus",
-                "unit3.s: Fatal error: can't write 41 bytes to section .text of "
-                "built/unit3.o: 'No space left on device'",
-                "unit1.cpp:2:1: fatal error: error writing to unit1.s: No space "
-                "left on device", "/usr/bin/ld: final link failed: Input/output "
-                "error\ncollect2: error: ld returned 1 exit status"):
+                "", "g++: fatal error: Killed signal terminated cc1plus",
+                f"unit3.s: Fatal error: can't write 41 bytes: '{disk}'",
+                f"unit1.cpp:2:1: fatal error: error writing to a.s: {disk}",
+                "ld: final link failed: Input/output error\n"
+                "collect2: error: ld returned 1 exit status"):
             self.assertFalse(build.blames_source(said), said)
 
 
