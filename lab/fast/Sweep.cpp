@@ -77,7 +77,8 @@ void Sweep::together([[maybe_unused]] unsigned slots, const Work& work) {
 #ifdef _OPENMP
   // Calling a team takes longer than a step of 100 nodes.
   const unsigned count = (slots + part_size - 1) / part_size;
-  alone = count <= 1 || (threads_asked_for == 0 && count < many_parts);
+  alone = count <= 1 || threads_asked_for == 1 ||
+          (threads_asked_for == 0 && count < many_parts);
   if (!alone) {
 #pragma omp parallel
     work(omp_get_thread_num(), omp_get_num_threads());

@@ -2,6 +2,7 @@
 /** @file Arrays.hpp
  * NumPy arrays to vectors, and vectors to arrays. */
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,9 +38,49 @@ inline std::string shape_of(const py::array& a) {
   return py::str(py::tuple(a.attr("shape")));
 }
 
-/** The rows of @a a, an array of shape (n, 3) of finite numbers. */
-inline std::vector<Point> points_of(const Array<double>& a, const char* name,
+/** @a given as an array of numbers. Throws a TypeError if it holds others. */
+inline Array<double> real(const py::object& given, const char* name) {
+  const auto a = py::array::ensure(given);
+  if (!a || !std::strchr("fiu", a.dtype().kind()))
+    throw py::type_error(
+        std::string(name) + " holds " +
+        std::string(py::str(a ? a.dtype() : given.get_type())) +
+        ", expected numbers");
+  return a;
+}
+
+/** Nodes of @a n that @a given names by their numbers, or as a mask of n.
+ * Throws a TypeError or a ValueError. */
+inline std::vector<unsigned> nodes_of(const py::object& given, const char* name,
+                                      std::size_t n) {
+  const bool is_set = py::isinstance<py::set>(given);
+  const auto a = py::array::ensure(is_set ? py::list(given) : given);
+  const char kind = !a ? 'O' : a.size() == 0 ? 'i' : a.dtype().kind();
+  if (!std::strchr("biu", kind) || a.ndim() != 1)
+    throw py::type_error(std::string(name) +
+                         " holds no nodes, expected their numbers, or a mask "
+                         "of shape (" +
+                         std::to_string(n) + ",)");
+  std::vector<unsigned> nodes;
+  if (kind == 'b' && std::size_t(a.size()) != n)
+    refuse(std::string(name) + " is a mask of shape " + shape_of(a) +
+           ", expected (" + std::to_string(n) + ",)");
+  const Array<long long> at = a;
+  for (py::ssize_t k = 0; k < at.size(); ++k) {
+    const long long i = kind == 'b' ? k : at.data()[k];
+    if (i < 0 || i >= (long long)(n))
+      refuse(std::string(name) + '[' + std::to_string(k) + "] is " +
+             std::to_string(i) + ", expected a node, 0 to " +
+             std::to_string(n - 1));
+    if (kind != 'b' || at.data()[k]) nodes.push_back(unsigned(i));
+  }
+  return nodes;
+}
+
+/** The rows of @a given, an array of shape (n, 3) of finite numbers. */
+inline std::vector<Point> points_of(const py::object& given, const char* name,
                                     py::ssize_t n = -1) {
+  const Array<double> a = real(given, name);
   if (a.ndim() != 2 || a.shape(1) != 3 || (n >= 0 && a.shape(0) != n))
     refuse(std::string(name) + " has shape " + shape_of(a) + ", expected (" +
            (n < 0 ? "n" : std::to_string(n)) + ", 3)");
@@ -53,8 +94,9 @@ inline std::vector<Point> points_of(const Array<double>& a, const char* name,
 }
 
 /** One number for all of @a n, or an array of n; each at least @a least. */
-inline std::vector<double> numbers_of(const Array<double>& a, const char* name,
+inline std::vector<double> numbers_of(const py::object& given, const char* name,
                                       std::size_t n, bool positive) {
+  const Array<double> a = real(given, name);
   if (a.ndim() != 0 && (a.ndim() != 1 || std::size_t(a.shape(0)) != n))
     refuse(std::string(name) + " has shape " + shape_of(a) +
            ", expected a number or (" + std::to_string(n) + ",)");

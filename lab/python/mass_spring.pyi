@@ -3,7 +3,6 @@
 SI units; z points up. n nodes, e springs, k states. docs/python.md has
 examples, help(mass_spring.Net) the meaning of each argument.
 """
-from typing import Sequence
 from numpy.typing import ArrayLike, NDArray
 from numpy import float64
 
@@ -50,7 +49,8 @@ class Scene:
     def limit(self, method: str) -> float: ...
     def run(self, method: str = "", t_end: float | None = None,
             dt: float | str | None = None, *, every: float | None = None,
-            atol: float | None = None) -> Result: ...
+            atol: float | None = None, x0: ArrayLike | None = None,
+            v0: ArrayLike | None = None) -> Result: ...
     def force(self, x: ArrayLike, v: ArrayLike, t: float = 0.0
               ) -> NDArray[float64]: ...
     def advise(self, tolerance: float | None = None, method: str = ""
@@ -59,7 +59,7 @@ class Scene:
 class Net(Scene):
     def __init__(self, x: ArrayLike, edges: ArrayLike, *,
                  k: ArrayLike = 100.0, L: ArrayLike | None = None,
-                 mass: ArrayLike | None = None, fixed: Sequence[int] = (),
+                 mass: ArrayLike | None = None, fixed: ArrayLike = (),
                  v: ArrayLike | None = None, drag: float = 0.0,
                  gravity: float = 9.81) -> None: ...
 

@@ -2,8 +2,10 @@
  * The module mass_spring for Python: nets from arrays, scenes from files, runs
  * with their states as arrays, and advice. mass_spring.pyi has its contract,
  * docs/python.md its examples. */
+#include <pthread.h>
+
 #include <cmath>
-#include <csignal>
+#include <cstring>
 #include <optional>
 #include <regex>
 #include <string>
@@ -16,10 +18,11 @@
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Lanes.hpp"
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/python/Arrays.hpp"
+#include "lab/python/Signals.hpp"
 #include "lab/scenes/Fields.hpp"
-#include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stepping/Changes.hpp"
@@ -31,47 +34,6 @@ namespace {
 /** @a message as Python shows it: options without their dashes. */
 std::string without_dashes(const std::string& message) {
   return std::regex_replace(message, std::regex("--([a-z])"), "$1");
-}
-
-/** While it lives, Ctrl-C and SIGTERM only end the computation of C++. */
-class CatchSignals {
- public:
-  CatchSignals() {
-    for (auto& [signal, action] : before_) sigaction(signal, nullptr, &action);
-    catch_interrupts();
-  }
-  ~CatchSignals() {
-    forget_interrupts();
-    for (auto& [signal, action] : before_) sigaction(signal, &action, nullptr);
-  }
-  CatchSignals(const CatchSignals&) = delete;
-  CatchSignals& operator=(const CatchSignals&) = delete;
-
- private:
-  std::pair<int, struct sigaction> before_[3] = {
-      {SIGINT, {}}, {SIGTERM, {}}, {SIGHUP, {}}};
-};
-
-/** Call @a compute without the GIL. A signal that came meanwhile is raised
- * again, for Python to handle; if Python goes on, this is a KeyboardInterrupt.
- */
-template <typename F>
-auto without_gil(F compute) {
-  std::optional<decltype(compute())> result;
-  int signal = 0;
-  {
-    py::gil_scoped_release released;
-    CatchSignals caught;
-    try {
-      result = compute();
-    } catch (const Interrupted&) {
-      signal = interrupted();
-    }
-  }
-  if (result) return std::move(*result);
-  raise(signal);
-  if (PyErr_CheckSignals() == 0) PyErr_SetNone(PyExc_KeyboardInterrupt);
-  throw py::error_already_set();
 }
 
 const MethodEntry& method_called(const std::string& name) {
@@ -151,10 +113,11 @@ class Simulation {
  public:
   explicit Simulation(Model m) : model_(std::move(m)), mesh_(mesh_of(model_)) {}
   Simulation(Model m, Net mesh)
-      : model_(std::move(m)), mesh_(std::move(mesh)) {}
+      : model_(std::move(m)), mesh_(std::move(mesh)), is_of_arrays_(true) {}
 
   const Model& model() const { return model_; }
   const Net& mesh() const { return mesh_; }
+  bool is_of_arrays() const { return is_of_arrays_; }
 
   double limit(const std::string& method) const {
     return Scene(model_, mesh_, TimeStep(), method_called(method))
@@ -164,8 +127,11 @@ class Simulation {
 
   Result run(const std::string& method, std::optional<double> t_end,
              const std::string& dt, std::optional<double> every,
-             std::optional<double> atol) const {
+             std::optional<double> atol, std::vector<Point> x0,
+             std::vector<Point> v0) const {
     Model m = model_;
+    Net mesh = x0.empty() ? mesh_ : moved_to(std::move(x0));
+    if (!v0.empty()) mesh.velocities = std::move(v0);
     if (!method.empty()) set_field(m, "method", {method});
     if (t_end) set_field(m, "t-end", {CME212::exact_text(*t_end)});
     const double between = every.value_or(m.t_end);
@@ -176,9 +142,12 @@ class Simulation {
       m.step = {.dt = std::min(between, m.t_end)};
     else if (!dt.empty())
       set_field(m, "dt", {dt});
+    if (atol && !(*atol > 0 && std::isfinite(*atol)))
+      throw SceneError("atol", CME212::short_text(*atol),
+                       "a length [m] above 0");
     if (atol) m.step.tolerance = *atol;
     check_step(m);
-    Scene scene(model_, mesh_, m.step, *m.method);
+    Scene scene(model_, mesh, m.step, *m.method);
     scene.watch(m.t_end);
     Result r;
     Settled<State> states(scene.stepper(), [&r](const State& s) { r.add(s); });
@@ -218,31 +187,47 @@ class Simulation {
   }
 
  private:
+  /** The net with its nodes at @a x, and its springs as long as before. */
+  Net moved_to(std::vector<Point> x) const {
+    if (!is_of_arrays_)
+      throw SceneError("x0", "of a scene from a file",
+                       "a Net: pins of a scene stand by their places");
+    Net net = mesh_;
+    for (Spring& s : net.springs)
+      if (s.L < 0) s.L = norm(net.points[s.i] - net.points[s.j]);
+    net.points = std::move(x);
+    return net;
+  }
+
   Model model_;
   Net mesh_;
+  bool is_of_arrays_ = false;
   std::shared_ptr<Scene> at_hand_;  // of force()
 };
 
 /** The net that arrays describe: mass_spring.pyi has their shapes.
  * Throws py::value_error "ARRAY[INDEX] is ..., expected ..." */
-Simulation make_net(const Array<double>& x, const Array<long long>& edges,
-                    const Array<double>& k, std::optional<Array<double>> L,
-                    std::optional<Array<double>> mass,
-                    const Array<long long>& fixed,
-                    std::optional<Array<double>> v, double drag,
+Simulation make_net(const py::object& x, const py::object& edges,
+                    const py::object& k, const py::object& L,
+                    const py::object& mass, const py::object& fixed,
+                    const py::object& v, const py::object& drag,
                     double gravity) {
   Net net;
   net.points = points_of(x, "x");
   const auto n = net.points.size();
-  if (v) net.velocities = points_of(*v, "v", py::ssize_t(n));
-  if (edges.ndim() != 2 || edges.shape(1) != 2)
-    refuse("edges has shape " + shape_of(edges) + ", expected (e, 2)");
-  const auto e = std::size_t(edges.shape(0));
+  if (!v.is_none()) net.velocities = points_of(v, "v", py::ssize_t(n));
+  const auto pairs = py::array::ensure(edges);
+  if (!pairs || (pairs.size() > 0 && !std::strchr("iu", pairs.dtype().kind())))
+    throw py::type_error("edges holds no nodes, expected pairs of integers");
+  if (pairs.ndim() != 2 || pairs.shape(1) != 2)
+    refuse("edges has shape " + shape_of(pairs) + ", expected (e, 2)");
+  const Array<long long> ends = pairs;
+  const auto e = std::size_t(ends.shape(0));
   const auto stiffness = numbers_of(k, "k", e, false);
   const auto length =
-      L ? numbers_of(*L, "L", e, false) : std::vector<double>(e, -1);
+      L.is_none() ? std::vector<double>(e, -1) : numbers_of(L, "L", e, false);
   for (std::size_t s = 0; s < e; ++s) {
-    const long long i = edges.data()[2 * s], j = edges.data()[2 * s + 1];
+    const long long i = ends.data()[2 * s], j = ends.data()[2 * s + 1];
     if (std::min(i, j) < 0 || std::max(i, j) >= (long long)(n) || i == j)
       refuse("edges[" + std::to_string(s) + "] is (" + std::to_string(i) +
              ", " + std::to_string(j) +
@@ -253,18 +238,12 @@ Simulation make_net(const Array<double>& x, const Array<long long>& edges,
   for (const std::string& note : net.notes)
     if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0)
       throw py::error_already_set();
-  net.masses = mass ? numbers_of(*mass, "mass", n, true)
-                    : std::vector<double>(n, 1. / double(n));
-  for (py::ssize_t f = 0; f < fixed.size(); ++f) {
-    const long long i = fixed.data()[f];
-    if (i < 0 || i >= (long long)(n))
-      refuse("fixed[" + std::to_string(f) + "] is " + std::to_string(i) +
-             ", expected a node, 0 to " + std::to_string(n - 1));
-    net.held.push_back(unsigned(i));
-  }
+  net.masses = mass.is_none() ? std::vector<double>(n, 1. / double(n))
+                              : numbers_of(mass, "mass", n, true);
+  net.held = nodes_of(fixed, "fixed", n);
   Model m;
   m.name = "net", m.gravity = gravity;
-  m.damping = numbers_of(Array<double>(py::cast(drag)), "drag", 1, false)[0];
+  m.damping = numbers_of(drag, "drag", 1, false)[0];
   if (!std::isfinite(gravity)) refuse("gravity is not finite");
   return {std::move(m), std::move(net)};
 }
@@ -278,6 +257,8 @@ std::string step_text(const py::object& dt) {
 
 Advice advise_on(const Simulation& s, std::optional<double> tolerance,
                  const std::string& method) {
+  if (s.is_of_arrays())
+    refuse("a Net has one grid and no question: advise() takes a Scene");
   Model m = s.model();
   AdviceRules rules;
   if (tolerance) set_field(m, "tolerance", {CME212::exact_text(*tolerance)});
@@ -409,26 +390,38 @@ void define_simulations(py::module_& module) {
           "run",
           [](const Simulation& s, const std::string& method,
              std::optional<double> t_end, const py::object& dt,
-             std::optional<double> every, std::optional<double> atol) {
+             std::optional<double> every, std::optional<double> atol,
+             const py::object& x0, const py::object& v0) {
             const std::string step = step_text(dt);
-            return without_gil(
-                [&] { return s.run(method, t_end, step, every, atol); });
+            const auto n = py::ssize_t(s.mesh().points.size());
+            const auto rows = [n](const py::object& given, const char* name) {
+              return given.is_none() ? std::vector<Point>()
+                                     : points_of(given, name, n);
+            };
+            auto x = rows(x0, "x0"), v = rows(v0, "v0");
+            return without_gil([&] {
+              return s.run(method, t_end, step, every, atol, std::move(x),
+                           std::move(v));
+            });
           },
           py::arg("method") = "", py::arg("t_end") = py::none(),
           py::arg("dt") = py::none(), py::kw_only(),
           py::arg("every") = py::none(), py::arg("atol") = py::none(),
+          py::arg("x0") = py::none(), py::arg("v0") = py::none(),
           "Run from the start to t_end [s] and return a Result.\n\n"
           "method: a name, see methods(). dt: the step [s]; 'auto': chosen by "
           "the stability limit and the energy; each by default as the scene "
           "says. every: record a state every so many seconds, at the first "
           "step there; None: the first and the last state. atol: tolerated "
-          "error of an inner step of rkn64 [m].\n\n"
+          "error of an inner step of rkn64 [m]. x0, v0: positions [m] and "
+          "velocities [m/s] to start from, (n, 3), with the rest lengths of "
+          "the net; None: its own.\n\n"
           "A run that fails returns: see Result.why. Raises ValueError for an "
           "argument that can't be used, KeyboardInterrupt by Ctrl-C. Releases "
           "the GIL.")
       .def(
           "force",
-          [=](Simulation& s, const Array<double>& x, const Array<double>& v,
+          [=](Simulation& s, const py::object& x, const py::object& v,
               double t) {
             const auto n = py::ssize_t(s.mesh().points.size());
             return array(
@@ -448,23 +441,22 @@ void define_simulations(py::module_& module) {
       "x: positions [m], (n, 3). edges: pairs of nodes, (e, 2). k: stiffness "
       "[N/m], a number or (e,). L: rest lengths [m], a number or (e,); None: "
       "as long as in x. mass [kg]: a number or (n,); None: 1 kg in all. "
-      "fixed: nodes that are held. v: velocities [m/s], (n, 3); None: at rest. "
+      "fixed: nodes that are held, or a mask of n. v: velocities [m/s], (n, "
+      "3); None: at rest. "
       "drag: c of each node [kg/s], force -c v. gravity [m/s^2], along -z.\n\n"
       "Raises ValueError \"ARRAY[INDEX] is ..., expected ...\".")
-      .def(py::init([](const Array<double>& x, const Array<long long>& edges,
-                       const Array<double>& k, std::optional<Array<double>> L,
-                       std::optional<Array<double>> mass,
-                       const Array<long long>& fixed,
-                       std::optional<Array<double>> v, double drag,
+      .def(py::init([](const py::object& x, const py::object& edges,
+                       const py::object& k, const py::object& L,
+                       const py::object& mass, const py::object& fixed,
+                       const py::object& v, const py::object& drag,
                        double gravity) {
              return FromArrays(
                  make_net(x, edges, k, L, mass, fixed, v, drag, gravity));
            }),
            py::arg("x"), py::arg("edges"), py::kw_only(), py::arg("k") = 100.,
            py::arg("L") = py::none(), py::arg("mass") = py::none(),
-           py::arg("fixed") = std::vector<long long>(),
-           py::arg("v") = py::none(), py::arg("drag") = 0.,
-           py::arg("gravity") = grav);
+           py::arg("fixed") = py::tuple(), py::arg("v") = py::none(),
+           py::arg("drag") = 0., py::arg("gravity") = grav);
 }
 
 }  // namespace
@@ -474,6 +466,8 @@ PYBIND11_MODULE(mass_spring, module) {
   using namespace lab;
   module.doc() = "Mass-spring cloth: nets, scenes, methods, advice.";
   lanes::cpu = lanes::fastest_cpu();
+  // The threads of OpenMP are not there after a fork.
+  pthread_atfork(nullptr, nullptr, [] { Sweep::set_threads(1); });
   translate_errors();
   define_values(module);
   define_simulations(module);

@@ -162,3 +162,109 @@ def test_examples_of_the_page(tmp_path, monkeypatch, capsys):
     assert (tmp_path / "work_precision.png").stat().st_size
     forces = dict(re.findall(r"(\S+) +(\d+) forces, error", said))
     assert int(forces["rkn64"]) < int(forces["RK45"])
+
+
+def hung(fixed):
+    return mass_spring.Net(PAIR, [[0, 1]], fixed=fixed)
+
+
+@pytest.mark.parametrize("fixed, held", [
+    ([True, False], [0]), (np.array([False, True]), [1]), ({1}, [1]),
+    ([False, False], []), ((), []), ([], []), (np.array([1], np.uint8), [1]),
+    (np.array([0, 9, 1])[::2], [0, 1])])
+def test_nodes_are_numbers_or_a_mask(fixed, held):
+    x = hung(fixed).run("verlet", 0.1, 0.01).x
+    assert [i for i in (0, 1) if (x[0, i] == x[-1, i]).all()] == held
+
+
+@pytest.mark.parametrize("fixed", [
+    [True], [0.0], [1 + 0j], ["0"], [[0]], "0", None, [2], [-1], [np.nan], 0])
+def test_what_names_no_nodes_is_refused(fixed):
+    with pytest.raises((TypeError, ValueError), match="^fixed"):
+        hung(fixed)
+
+
+@pytest.mark.parametrize("name, value", [
+    ("k", "soft"), ("k", 1j), ("k", True), ("k", None), ("k", -1),
+    ("k", np.nan), ("L", [np.inf]),
+    ("L", ["a"]), ("mass", 0), ("mass", [1, 2, 3]),
+    ("mass", pathlib.Path(".")), ("v", [[0, 0]]), ("v", [[0, 0, 1j]] * 2),
+    ("drag", -1), ("drag", "x"), ("drag", np.inf), ("gravity", np.nan)])
+def test_other_numbers_are_refused_by_name(name, value):
+    with pytest.raises((TypeError, ValueError), match=name):
+        oscillator(**{name: value})
+
+
+@pytest.mark.parametrize("edges", [
+    [[0.0, 1.0]], [[True, False]], [["a", "b"]], [[0, 2]], [[0, 1, 1]], None])
+def test_edges_are_pairs_of_nodes(edges):
+    with pytest.raises((TypeError, ValueError), match="edges"):
+        mass_spring.Net(PAIR, edges)
+
+
+@pytest.mark.parametrize("atol", [0.0, -1.0, np.nan, np.inf])
+def test_bad_tolerances(atol):
+    with pytest.raises(ValueError, match="^atol"):
+        oscillator().run("rkn64", 1.0, "auto", atol=atol)
+
+
+def test_a_run_goes_on_with_the_rest_lengths_of_the_net():
+    net = mass_spring.Net(PAIR, [[0, 1]], fixed=[0], k=50.0)
+    whole = net.run("verlet", 1.0, 0.001)
+    x, v = net.x, np.zeros((2, 3))
+    for _ in range(20):
+        r = net.run("verlet", 0.05, 0.001, x0=x, v0=v)
+        x, v = r.x[-1], r.v[-1]
+    assert x == pytest.approx(whole.x[-1], abs=1e-12)
+    scene = mass_spring.scene(str(root / "data/scenes/curtain.toml"))
+    with pytest.raises(ValueError, match="x0 is of a scene from a file"):
+        scene.run(x0=scene.x)
+    with pytest.raises(ValueError, match="a Net has one grid"):
+        net.advise()
+
+
+def caught():
+    text = pathlib.Path("/proc/self/status").read_text("ascii")
+    return re.search(r"^SigCgt:\t(\w+)$", text, re.M)[1]  # type: ignore
+
+
+@pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(),
+                    reason="no /proc")
+def test_ctrl_c_ends_all_runs_of_all_threads():
+    net, before, ended = oscillator(), caught(), []
+
+    def long():
+        try:
+            net.run("verlet", 1e9, 0.001)
+        except KeyboardInterrupt:
+            ended.append(True)
+
+    threads = [threading.Thread(target=long) for _ in range(4)]
+    with pytest.raises(KeyboardInterrupt):
+        for one in threads:
+            one.start()
+        while caught() == before:
+            pass
+        os.kill(os.getpid(), signal.SIGINT)
+        while True:     # a join() that is interrupted ends before its thread
+            pass
+    for one in threads:
+        one.join()
+    assert len(ended) == 4 and caught() == before
+    assert net.run("verlet", 0.01, 0.001).steps == 10
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+
+
+def test_a_forked_child_runs():
+    """Its parent has run by many threads, which the child has not."""
+    x = np.stack(np.meshgrid(np.arange(120.), np.arange(120.), [0.]),
+                 -1).reshape(-1, 3)
+    net = mass_spring.Net(x, [[i, i + 1] for i in range(len(x) - 1)])
+    expected = net.run("verlet", 0.1, 0.01).x
+    child = os.fork()
+    if child == 0:
+        signal.alarm(100)
+        same = (net.run("verlet", 0.1, 0.01).x == expected).all()
+        os._exit(0 if same else 1)
+    assert os.waitpid(child, 0)[1] == 0
