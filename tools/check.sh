@@ -32,6 +32,11 @@ strict() { case $($1 -dumpversion) in 12* | 14*) echo -Werror ;; esac; }
 export SPEED=-O1
 # Sources are compiled several at once: lab/units.mk.
 export UNITY=1
+# Two checks of one tree would end each other's programs.
+if [ "$tier" != run ]; then
+  exec 8>"$logs/lock"
+  flock -n 8 || { echo "check: another one runs in this tree" >&2; exit 2; }
+fi
 started=$SECONDS passed=0 failed=0
 # Seconds that a step may take: three times what a slow machine needs.
 limit=600 long=1800
@@ -56,7 +61,7 @@ step() {  # NAME COMMAND...
   local name=$1 log=$logs/$1.log from=$SECONDS ok=0 good bad
   shift
   [ "$(type -t "$1")" != function ] || set -- tools/check.sh run "$@"
-  env --default-signal timeout -k 10 "$limit" "$@" >"$log" 2>&1 </dev/null &
+  env --default-signal timeout -k 10 "$limit" "$@" >"$log" 2>&1 </dev/null 8>&- &
   wait $! && ok=1
   kill -KILL -- -$! 2>/dev/null  # what it left running
   [ "$ok" = 1 ] || [ $((SECONDS - from)) -lt "$limit" ] ||
@@ -152,6 +157,18 @@ worker() {
       *) step "$test" "build/check/$test" ;;
     esac
   done
+}
+# Has each test of each program run?
+all_ran() {
+  local test listed ran status=0
+  for test in $(make -s list-units); do
+    listed=$("build/check/$test" --gtest_list_tests | grep -c '^  ')
+    ran=$(sed -nE 's/^\[==========\] ([0-9]+) tests? from .* ran\..*/\1/p' \
+      "$logs/$test.log")
+    [ "$ran" = "$listed" ] ||
+      { echo "$test: ${ran:-none} of $listed tests ran"; status=1; }
+  done
+  return $status
 }
 one_worker() { worker; }
 other_worker() { worker; }
@@ -354,6 +371,7 @@ case $tier in
   check)
     limit=$long step build build_tests
     beside one_worker other_worker
+    step all_ran all_ran
     beside of_charts of_readme ;;
   check-full)
     limit=$long step programs programs

@@ -17,6 +17,7 @@ mkdir -p "$roots"
 # Each command as it is typed, after those above it.
 commands=(
   "make demo"
+  "make web-deps web"
   "make grade DIR=."
   "make starter OUT=../starter"
   "cd ../starter && make deps"

@@ -152,7 +152,8 @@ class Kit:
     @classmethod
     def make_jail(cls, folder: pathlib.Path) -> None:
         cls.run(["-O1", KIT / "jail.cpp", "-o", folder / "jail", "-lseccomp"],
-                 "jail.cpp can't be built: is libseccomp-dev there? make deps")
+                 "jail.cpp can't be built: is libseccomp-dev there? "
+                 "tools/deps.sh grade")
 
     def make_linked(self, folder: pathlib.Path) -> None:
         for source in LINKED:
