@@ -26,7 +26,7 @@ Run::Run(Scene& scene, const Options& o)
     : scene_(scene),
       o_(o),
       progress_(o.quiet),
-      observer_(o.model, scene),
+      observer_(scene),
       frames_({{FrameFormat::vtp, o.vtp}, {FrameFormat::ply, o.ply}},
               o.frame_rate, scene),
       rows_(scene.stepper(),
@@ -47,7 +47,7 @@ Run::Run(Scene& scene, const Options& o)
 
 void Run::start() {
   progress_ = Progress(o_.quiet);
-  observer_.restart(o_.model, scene_);
+  observer_.restart();
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
   rows_.clear(), written_ = 0;
   judged_ = false;
@@ -97,7 +97,7 @@ void Run::to_end(const std::function<void()>& after) {
 
 /** After each step. */
 void Run::look() {
-  if (o_.model.measure.over_time()) observer_.look(scene_.model(), scene_);
+  if (observer_.looks()) observer_.look();
   const bool at_end = scene_.done(o_.model.t_end);
   if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
@@ -373,8 +373,7 @@ void Run::add_row() {
     row += ',' + CME212::to_text(a);
   row += ',' + std::to_string(scene_.evaluations());
   if (!columns_of(o_.model.measure).empty())
-    for (double a : lab::answer(scene_.model(), scene_, o_.model.measure))
-      row += ',' + CME212::to_text(a);
+    for (double a : lab::answer(scene_)) row += ',' + CME212::to_text(a);
   rows_.add(row + '\n');
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
-#include "lab/scenes/Interrupt.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "lab/stepping/Separation.hpp"
 
@@ -45,7 +44,6 @@ Pilot run_pilot(const Model& m, const Track* other, const std::string& doing,
       0,
       {}};
   scene.run_to(m.t_end, [&] {
-    end_if_interrupted();
     tell(doing, scene.time() / m.t_end);
     p.track.look(scene);
   });

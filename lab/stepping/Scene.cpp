@@ -349,7 +349,7 @@ bool Scene::confirms(const Energies& e) const {
     return false;
   try {
     const auto other = kept ? kept->branch(1) : finer();
-    if (other->time() >= time() || !run_until(*other, time())) return false;
+    if (other->time() >= time() || !other->run_to(time())) return false;
     const double mine = e.internal(), there = other->energy().internal();
     return mine <= same * there && there <= same * mine;
   } catch (const Interrupted&) {

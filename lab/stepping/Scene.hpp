@@ -90,6 +90,7 @@ class Scene : private SceneParts, private Stepper {
   /** As that of Stepper. What was changed by hand is not saved. */
   void archive(Archive& a);
 
+  Stepper& stepper() { return *this; }
   const Stepper& stepper() const { return *this; }
   using Stepper::check, Stepper::control, Stepper::done, Stepper::drift,
       Stepper::dt, Stepper::energy, Stepper::evaluations, Stepper::failure,

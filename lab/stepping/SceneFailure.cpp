@@ -45,16 +45,15 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
                 double left) {
   try {
     const auto trial = failed.anew(cure);
-    const Model& m = trial->model();
     t_end = std::min(t_end, trial->time() + left / trial->work_of(1) * cure.dt);
     trial->watch(t_end, true);
     std::optional<Observer> observer;
-    if (m.measure.quantity != Measure::positions) observer.emplace(m, *trial);
+    if (trial->model().measure.quantity != Measure::positions)
+      observer.emplace(*trial);
     std::function<void()> look;
-    if (observer && m.measure.over_time())
-      look = [&] { observer->look(m, *trial); };
-    if (!run_until(*trial, t_end, look)) return {false, trial->time()};
-    const Answer mine = observer ? observer->answer(m, *trial) : Answer();
+    if (observer && observer->looks()) look = [&] { observer->look(); };
+    if (!trial->run_to(t_end, look)) return {false, trial->time()};
+    const Answer mine = observer ? observer->answer() : Answer();
     if (!trial->witness()) return {true, trial->time()};
     const Verdict& v = trial->witness()->verdict(observer ? &mine : nullptr);
     return {!v.gains() && !v.was_off(), trial->time(), v.apart, v.answer};

@@ -84,7 +84,7 @@ class Witness final : public SettledReader {
   /** @param scene outlives this   @param t_end end of the run [s]; no_limit:
    * windows as of a run of 5 s, again and again
    * @param whole repeat all; else the cost decides */
-  Witness(const Scene& scene, double t_end, bool whole);
+  Witness(Scene& scene, double t_end, bool whole);
   ~Witness();
 
   /** Looks at the present state, if that is due; at the end of a window,
@@ -116,7 +116,7 @@ class Witness final : public SettledReader {
     Look() = default;
     explicit Look(const Scene& s);
   };
-  const Scene& scene_;
+  Scene& scene_;
   double t_end_;
   const bool asked_whole_;
   bool whole_ = false;
@@ -141,10 +141,5 @@ class Witness final : public SettledReader {
   Verdict judge_whole(const Answer* mine) const;
   Verdict judge_windows() const;
 };
-
-/** Run @a s to @a time [s], interruptibly. Call @a after(), if there is one,
- * after each step, even if the step failed.  @return false if it failed
- * Throws Interrupted, and what @a after throws. */
-bool run_until(Scene& s, double time, const std::function<void()>& after = {});
 
 }  // namespace lab
