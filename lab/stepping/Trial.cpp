@@ -12,7 +12,8 @@ namespace lab {
 Answer answer(const Scene& scene, const Measure& what) {
   return quantities[what.quantity].read(
       {scene.model(), scene.cloth(), scene.time(), &scene.held(),
-       &scene.force(), what.quantity == Measure::lost_energy ? scene.lost() : 0,
+       &scene.force(),
+       what.quantity == Measure::lost_energy ? scene.stepper().lost() : 0,
        scene.stepper().pulls()},
       what);
 }

@@ -62,6 +62,11 @@ class Observer {
   bool looks() const { return what_.over_time(); }
   /** Call it after each step if looks().  As long as answer() */
   void look();
+  /** What to call after each step, for run_to(): look(), if it looks(); else
+   * nothing, so that steps may be many at once. */
+  std::function<void()> after_steps() {
+    return looks() ? [this] { look(); } : std::function<void()>();
+  }
   /** The answer so far; empty if what it asks about did not happen. */
   Answer answer() const;
   void archive(Archive& a) { a(settled_)(looks_); }

@@ -291,24 +291,25 @@ void Witness::archive(Archive& a, Witness* w) {
   w->look_again();
 }
 
-const Verdict& Witness::verdict(const Answer* mine) const {
+const Verdict& Witness::verdict(const Observer* asked) const {
   if (!said_ || said_at_ != scene_.steps()) {
-    said_ = whole_ ? judge_whole(mine) : judge_windows();
+    said_ = whole_ ? judge_whole(asked) : judge_windows();
     said_at_ = scene_.steps();
   }
   return *said_;
 }
 
-Verdict Witness::judge_whole(const Answer* mine) const {
+Verdict Witness::judge_whole(const Observer* asked) const {
   Verdict v;
   const Model& m = scene_.model();
   v.sudden = scene_.cloth().num_edges() != edges_;
   try {
     const auto finer = kept_ ? kept_->branch(1) : scene_.finer();
     std::optional<Observer> observer;
-    if (mine) observer.emplace(*finer);
-    std::function<void()> look;
-    if (observer && observer->looks()) look = [&] { observer->look(); };
+    if (asked && m.measure.quantity != Measure::positions)
+      observer.emplace(*finer);
+    const std::function<void()> look =
+        observer ? observer->after_steps() : nullptr;
     const std::vector<double> d = repeat(*finer, v, v.slack, look);
     if (!v.failed) v.failed = !finer->run_to(scene_.time(), look);
     v.cost = sweeps_of(*finer) / std::max(1., sweeps_of(scene_));
@@ -323,7 +324,7 @@ Verdict Witness::judge_whole(const Answer* mine) const {
     v.apart = distance(scene_.cloth(), finer->cloth(), size());
     if (observer) {
       v.asked = name_of(m.measure);
-      v.answer = changed_by(*mine, observer->answer(), m.measure,
+      v.answer = changed_by(asked->answer(), observer->answer(), m.measure,
                             scene_.cloth(), size(), least_energy(v));
     }
   } catch (const std::invalid_argument&) {  // no such step
