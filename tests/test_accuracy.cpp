@@ -9,7 +9,6 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/stepping/Accuracy.hpp"
 #include "lab/stepping/Scene.hpp"
-#include "lab/stepping/Separation.hpp"
 #include "tests/Built.hpp"
 #include "tests/Says.hpp"
 

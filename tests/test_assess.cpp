@@ -79,8 +79,7 @@ TEST(Percent, IsOfTheChangeOrOfTheAnswer) {
     ASSERT_EQ(a.refusal, "") << measure;
     const Scene start(m);
     EXPECT_NEAR(a.tolerance,
-                0.05 * distance(answer(m, start, m.measure), a.grids.limit(),
-                                m.measure),
+                0.05 * distance(answer(start), a.grids.limit(), m.measure),
                 1e-12);
     EXPECT_EQ(asked(a), "(asked: 5 % of the change since t = 0, " +
                             with_unit(a.tolerance, m.measure) + ')');

@@ -84,7 +84,7 @@ TEST(Work, OfTheWind) {
     m.damping = 2 / 25.;  // gamma = 2/s
     m.wind = Wind{Point(3, 0, 1)};
     Scene s(m);
-    s.follow_drag();
+    s.stepper().follow_drag();
     ASSERT_TRUE(s.run_to(1));
     const Point v = -std::expm1(-2.) * m.wind->velocity;
     EXPECT_LT(norm(s.cloth().node(7).value().vel - v), 0.01) << method;

@@ -283,7 +283,7 @@ TEST(Measure, SeesNoStepThatIsTakenBack) {
   m.spheres = {read_sphere("at 0.6 0.5 -0.4 radius 0.2")};
   Scene scene(m);
   struct Asked {
-    Model m;
+    Measure what;
     std::unique_ptr<Observer> observer;
     std::map<long long, double> seen;  // by step
     double most_ever;                  // also of steps that are taken back
@@ -293,16 +293,16 @@ TEST(Measure, SeesNoStepThatIsTakenBack) {
        {"max stretch", "max com x", "max com y", "max energy", "max pin-force",
         "max point u 1 z", "max point u 1 v 0 x", "max point v 0 y",
         "max point u 0.25 z"}) {
-    m.measure = read_measure(text);
-    const double start = answer(m, scene, m.measure)[0];
+    const Measure what = read_measure(text);
+    const double start = answer(scene, what)[0];
     all.push_back(
-        {m, std::make_unique<Observer>(m, scene), {{0, start}}, start});
+        {what, std::make_unique<Observer>(scene, what), {{0, start}}, start});
   }
   scene.run_to(m.t_end, [&] {
     for (Asked& a : all) {
-      a.observer->look(a.m, scene);
+      a.observer->look();
       a.seen.erase(a.seen.upper_bound(scene.steps()), a.seen.end());
-      const double now = answer(a.m, scene, a.m.measure)[0];
+      const double now = answer(scene, a.what)[0];
       a.seen[scene.steps()] = now;
       a.most_ever = std::max(a.most_ever, now);
     }
@@ -312,7 +312,7 @@ TEST(Measure, SeesNoStepThatIsTakenBack) {
   for (const Asked& a : all) {
     const auto most = std::ranges::max_element(
         a.seen, {}, [](const auto& at) { return at.second; });
-    EXPECT_EQ(a.observer->answer(a.m, scene), Answer{most->second});
+    EXPECT_EQ(a.observer->answer(), Answer{most->second});
     differ += a.most_ever > most->second;
   }
   EXPECT_GT(differ, 0);
@@ -375,7 +375,7 @@ TEST(Measure, HasColumnsOfItsOwnAtTheEndOfATable) {
     EXPECT_EQ(std::ranges::count(last, ','), std::ranges::count(head, ','));
     if (*columns) {
       EXPECT_EQ(std::strtod(&last[last.rfind(',') + 1], nullptr),
-                answer(o.model, scene, o.model.measure).back());
+                answer(scene).back());
     }
   }
 }

@@ -103,7 +103,6 @@ TEST(Omega, AgreesWithAllEigenvaluesOfRandomCloths) {
     const double found = omega_safe(r.g, springs, pin);
     EXPECT_GE(found, safe * (1 - 1e-9)) << seed;
     EXPECT_LE(found, safe * 1.001 + 1e-9) << seed;
-    EXPECT_GE(omega_gershgorin(r.g, springs, pin), sharp * (1 - 1e-12)) << seed;
   }
 }
 
@@ -175,16 +174,13 @@ TEST(Omega, IsThatOfChainsAndGrids) {
     EXPECT_NEAR(SharpOmega()(small, springs, held, 100), spectra,
                 1e-5 * spectra);
     EXPECT_NEAR(SharpOmega()(small, springs, held), spectra, 0.02 * spectra);
-    EXPECT_LT(omega_gershgorin(small, springs, held), 1.37 * spectra);
   }
 }
 
 TEST(Omega, IsZeroWhereNothingSwings) {
   Cloth g;
   auto all_zero = [&g](const ConstraintPlan& c) {
-    return omega_safe(g, springs, c) == 0 &&
-           omega_gershgorin(g, springs, c) == 0 &&
-           SharpOmega()(g, springs, c) == 0;
+    return omega_safe(g, springs, c) == 0 && SharpOmega()(g, springs, c) == 0;
   };
   EXPECT_TRUE(all_zero(free_cloth));  // no nodes
   Node a = g.add_node(Point(0, 0, 0)), b = g.add_node(Point(1, 0, 0));
@@ -194,12 +190,8 @@ TEST(Omega, IsZeroWhereNothingSwings) {
   g.edge(0).value().K = 50;
   EXPECT_NEAR(omega_safe(g, springs, free_cloth), 10, 1e-9);  // sqrt(2 K/m)
   EXPECT_NEAR(SharpOmega()(g, springs, free_cloth), 10, 1e-9);
-  EXPECT_NEAR(omega_gershgorin(g, springs, free_cloth), 10, 1e-9);
   const std::array ends = {a, b};
   EXPECT_TRUE(all_zero(PinConstraint(ends)));  // all held
-  const std::array one = {a};
-  EXPECT_NEAR(omega_gershgorin(g, springs, PinConstraint(one)), std::sqrt(50),
-              1e-9);
 }
 
 // A force without a stiffness of its own stands for the cloth's edges.

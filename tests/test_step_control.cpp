@@ -218,7 +218,7 @@ TEST(SteeredStep, IsTheSameWhoeverLooks) {
       const bool looked = &end != ends || s.check();
       EXPECT_TRUE(looked);
       back += s.steps() <= last ? last + 1 - s.steps() : 0;
-      EXPECT_GE(s.steps(), s.settled_steps());
+      EXPECT_GE(s.steps(), s.stepper().settled_steps());
       last = s.steps();
     }));
     EXPECT_EQ(s.time(), 30);

@@ -25,7 +25,7 @@ Verdict verdict(Model m, const char* method, double dt, double end = 0) {
   Scene scene(m);
   scene.watch(end > 0 ? end : m.t_end);
   EXPECT_TRUE(scene.run_to(m.t_end)) << text_of(scene.failure());
-  const Answer mine = answer(m, scene, m.measure);
+  const Observer mine(scene);
   return scene.witness()->verdict(&mine);
 }
 
@@ -145,8 +145,9 @@ TEST(Witness, VouchesForForcesAtRestByEveryMethod) {
       Scene scene(m);
       scene.watch(m.t_end, true);
       ASSERT_TRUE(scene.run_to(m.t_end)) << text_of(scene.failure());
-      const Answer force = answer(m, scene, m.measure);
-      const Verdict& v = scene.witness()->verdict(&force);
+      const Observer asked(scene);
+      const Answer force = asked.answer();
+      const Verdict& v = scene.witness()->verdict(&asked);
       if (v.fine()) {
         const double known = std::max(0.01, 2 * v.answer);
         EXPECT_NEAR(force[0], 0.2 * grav, known * 0.2 * grav)

@@ -13,11 +13,12 @@ int main() {
       model.method = lab::find_method(name);
       model.step.dt = dt;
       lab::Scene scene(model);
-      scene.follow_drag();
+      scene.stepper().follow_drag();
       std::cout << name << ',' << dt << ',';
       if (scene.run_to(model.t_end)) {
         const auto now = lab::energies(scene.cloth(), model.gravity);
-        std::cout << scene.evaluations() << ',' << scene.drift(now) << '\n';
+        std::cout << scene.evaluations() << ',' << scene.stepper().drift(now)
+                  << '\n';
       } else {
         std::cout << scene.evaluations() << ",failed\n";
       }

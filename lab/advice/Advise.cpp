@@ -106,7 +106,7 @@ Advice advise(const Model& m, const AdviceRules& rules) {
   Search s(m, rules, 1);
   if (!s.grids.trivial().empty()) {  // on any grid, before a run
     Advice a = s.finish("");
-    a.answer = answer(m, Scene(m), m.measure);
+    a.answer = answer(Scene(m));
     a.model = m, a.error = 0, a.work = s.q.own_work;
     return a;
   }

@@ -208,9 +208,8 @@ std::string GridStudy::way_out(double work) const {
 }
 
 Answer GridStudy::answer_at_start() const {
-  const Model& m = grids().back().model;
-  const Scene start(m);
-  return Observer(m, start).answer(m, start);
+  Scene start(grids().back().model);
+  return Observer(start).answer();
 }
 
 /** The tolerance in the unit of the measure, if it is a share of the change

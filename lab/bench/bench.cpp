@@ -63,7 +63,7 @@ struct Figure {
 };
 
 /** Makes a method take @a count steps on a cloth, by default as a scene. */
-template <typename M, int count = Scene::guard_interval>
+template <typename M, int count = Stepper::guard_interval>
 std::function<std::function<void()>(unsigned)> stepping(Kind kind) {
   return [kind](unsigned side) -> std::function<void()> {
     const ForcePlan force =
@@ -120,15 +120,15 @@ std::vector<Figure> figures() {
          stepping<SymplecticEuler>(kind), true,
          sizeof(double) * (6 + 6 + 1 + (kind == Kind::grid ? 8 : 16.0)) +
              (kind == Kind::grid ? 0 : 32),
-         kind, 1, Scene::guard_interval});
+         kind, 1, Stepper::guard_interval});
   }
   add({"step: SymplecticEuler, shuffled", "step: SymplecticEuler",
        stepping<SymplecticEuler>(Kind::shuffled), true, 0, Kind::shuffled, 1,
-       Scene::guard_interval});
+       Stepper::guard_interval});
   add({"step: Verlet", "step: flat arrays", stepping<Verlet>(Kind::grid), true,
-       0, Kind::grid, 1, Scene::guard_interval});
+       0, Kind::grid, 1, Stepper::guard_interval});
   add({"step: Rk4", "step: flat arrays", stepping<Rk4>(Kind::grid), true, 0,
-       Kind::grid, 1, Scene::guard_interval});
+       Kind::grid, 1, Stepper::guard_interval});
   add({"step: symp_euler_step(), functor", "step: flat arrays",
        [](unsigned n) -> Make {
          return [&g = cloth(n, Kind::grid)] {
@@ -144,13 +144,13 @@ std::vector<Figure> figures() {
          auto scene = std::make_shared<Scene>(
              assignment_scene(), Net{grid_points(n), grid_quads(n)},
              TimeStep{.dt = dt}, *default_method());
-         return [scene] { scene->steps_at_once(Scene::guard_interval); };
+         return [scene] { scene->steps_at_once(Stepper::guard_interval); };
        },
-       false, 0, Kind::grid, 1, Scene::guard_interval});
+       false, 0, Kind::grid, 1, Stepper::guard_interval});
   if (Sweep::processors() > 1)
     add({"step: SymplecticEuler, threads", "step: SymplecticEuler",
          stepping<SymplecticEuler>(Kind::grid), true, 0, Kind::grid,
-         Sweep::processors(), Scene::guard_interval});
+         Sweep::processors(), Stepper::guard_interval});
 
   // The springs' forces, layer by layer.
   for (auto [kind, of] : {std::pair(Kind::grid, std::string()),

@@ -65,7 +65,7 @@ Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
   for (const auto& spring : springs)
     length = std::min(length, norm(rest[spring.i] - rest[spring.j]));
   multiply(1e-7 * length *
-           std::max(1.0, omega_gershgorin(s.cloth, s.force, s.constraint)));
+           std::max(1.0, omega_safe(s.cloth, s.force, s.constraint)));
 
   auto made = method.make();
   const double start = size();

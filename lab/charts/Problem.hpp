@@ -12,24 +12,6 @@
 
 namespace lab {
 
-/** Calls another constraint and counts the calls: the steps that a method with
- * error control makes. */
-class CountingConstraint : public ForwardingConstraint {
- public:
-  explicit CountingConstraint(const ConstraintPlan& inner)
-      : ForwardingConstraint(inner, {.nodewise = inner.nodewise()}) {}
-  void operator()(Cloth& g, double t) const override { ++calls_, inner_(g, t); }
-  void project(Cloth& g, double t, unsigned first,
-               unsigned last) const override {
-    if (first == 0) ++calls_;  // one thread projects that part
-    inner_.project(g, t, first, last);
-  }
-  long long calls() const { return calls_; }
-
- private:
-  mutable long long calls_ = 0;
-};
-
 /** How two final states of a run are compared; both norms are lengths [m].
  * positions    RMS over the nodes of the distance between their positions
  * functionals  sqrt(|dc|^2 + (dE/(M g))^2): distance of the centers of mass,
@@ -75,7 +57,6 @@ struct Problem : Model {
 struct Start {
   Cloth cloth;
   ForcePlan force;
-  CountingConstraint counted;
   ConstraintPlan constraint;
 
   explicit Start(const Problem& p);
@@ -101,8 +82,8 @@ double distance(const Problem& p, const End& a, const End& b);
 /** How a run ended. */
 struct Outcome {
   enum class Status { ok, diverged, failed } status = Status::ok;
-  std::string reason;  // empty if ok
-  long long steps = 0;
+  std::string reason;    // empty if ok
+  long long steps = 0;   // done
   long long sweeps = 0;  // force evaluations
   Work work = {};        // besides those
   double seconds = 0;

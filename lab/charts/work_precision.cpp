@@ -143,14 +143,13 @@ void write_case(std::ostream& out, const Problem& p, const Reference& r,
   out << p.name << ',' << c.method->info.name << ','
       << (by_tolerance ? "" : cell(p.t_end / double(c.steps))) << ','
       << (by_tolerance ? cell(c.tolerance) : "") << ','
-      << (c.of_limit > 0 ? cell(c.of_limit) : "") << ','
-      << (by_tolerance ? c.first.steps : c.steps) << ',' << std::llround(sweeps)
-      << ',' << c.first.work.inner << ',' << c.first.work.newton << ','
-      << c.first.work.products << ',' << c.first.work.factors << ','
-      << cell(least) << ',' << cell(median) << ',' << (ok ? cell(c.error) : "")
-      << ',' << cell(r.floor) << ',' << name_of(p.norm) << ','
-      << statuses[static_cast<int>(c.first.status)] << ','
-      << cell(c.first.reason) << '\n';
+      << (c.of_limit > 0 ? cell(c.of_limit) : "") << ',' << c.steps << ','
+      << std::llround(sweeps) << ',' << c.first.work.inner << ','
+      << c.first.work.newton << ',' << c.first.work.products << ','
+      << c.first.work.factors << ',' << cell(least) << ',' << cell(median)
+      << ',' << (ok ? cell(c.error) : "") << ',' << cell(r.floor) << ','
+      << name_of(p.norm) << ',' << statuses[static_cast<int>(c.first.status)]
+      << ',' << cell(c.first.reason) << '\n';
 }
 
 void work_precision(const std::vector<Problem>& problems,

@@ -86,7 +86,7 @@ std::vector<std::array<unsigned, 2>> crossed_edges(
 // ----------------------------------------------------------------------- Live
 
 Live::Side::Side(std::unique_ptr<Scene> s) : scene(std::move(s)) {
-  scene->follow_drag();
+  scene->stepper().follow_drag();
   mark();
   sharp_limit = safe_limit;
 }
@@ -186,7 +186,7 @@ RunReadings Live::Side::readings(bool sharp) {
   r.steps = scene->steps(), r.time = scene->time();
   count(), r.work = work;
   r.energy = energies(scene->cloth(), scene->model().gravity, scene->flow());
-  r.drift = scene->drift(r.energy);
+  r.drift = scene->stepper().drift(r.energy);
   r.failure = scene->failure();
   return r;
 }
@@ -217,7 +217,7 @@ bool Live::step() {
     if (side == &*main_ || !side->runs()) continue;
     Scene& s = *side->scene;
     while (!s.done(time) && !interrupted())
-      s.steps_at_once(Scene::guard_interval, time);
+      s.steps_at_once(Stepper::guard_interval, time);
     s.check();
   }
   if (main_->changes_left != scene().changes_left()) fit_steps();

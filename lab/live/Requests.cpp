@@ -136,7 +136,7 @@ void Live::apply(const std::string& text) {
   const auto& request = *requests().find(in);
   if (request.kind != Requests<Live>::expand) {
     // A guard that looks now may find a failure that it would find later.
-    each_running([](Scene& scene) { scene.settle(); });
+    each_running([](Scene& scene) { scene.stepper().settle(); });
     recording_ += std::to_string(calls_) + ' ' + text + '\n';
   }
   request.run(in, this);

@@ -28,9 +28,8 @@ using json::Json, json::list, json::members, json::object;
 std::string warning_text(const Scene& s) {
   if (const std::string missed = s.missed_text(); !missed.empty())
     return missed;
-  if (s.failure() || s.control() || !s.witness()) return "";
-  const Verdict& verdict = s.witness()->verdict();
-  return verdict.wrong() ? verdict.wrong_text() + "; " + s.remedy() : "";
+  const Verdict* const wrong = s.wrong();
+  return wrong ? wrong->wrong_text() + "; " + s.remedy() : "";
 }
 
 Json json_of(const RunReadings& r) {

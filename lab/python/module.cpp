@@ -61,13 +61,12 @@ std::optional<Why> why_failed(const Scene& s) {
     w.kind = kinds[int(f->kind)], w.cause = e.cause, w.text = e.text();
     w.step = f->step, w.time = f->time, w.dt = f->dt;
     if (f->place.index >= 0) w.node = f->place.index;
-  } else {  // as ./cloth ends
-    if (s.control() || !s.witness()) return std::nullopt;
-    const Verdict& verdict = s.witness()->verdict();
-    if (!verdict.wrong()) return std::nullopt;
-    w.kind = "energy", w.cause = verdict.wrong_text();
+  } else if (const Verdict* wrong = s.wrong()) {  // as ./cloth ends
+    w.kind = "energy", w.cause = wrong->wrong_text();
     w.text = w.cause + "; " + s.remedy();
     w.step = s.steps(), w.time = s.time(), w.dt = s.dt();
+  } else {
+    return std::nullopt;
   }
   if (const auto& cure = s.diagnosis().cure)
     w.cure = {std::string(cure->method.info.name), cure->dt};
@@ -160,7 +159,7 @@ class Simulation {
       const double next = between * (std::floor(last / between + 1e-6) + 1);
       const double left = std::ceil((next - scene.time()) / scene.dt() - 1e-6);
       const int most = int(std::clamp(std::min(left, at_once), 1.,
-                                      double(Scene::guard_interval)));
+                                      double(Stepper::guard_interval)));
       scene.steps_at_once(most, m.t_end);
       const bool due = scene.time() >= next - 1e-6 * scene.dt();
       if ((due || scene.done(m.t_end)) && scene.check())

@@ -297,8 +297,7 @@ std::string FrameFolder::finish() const {
 
 // --------------------------------------------------------------------- Export
 
-Export::Export(const std::vector<Folder>& folders, double rate,
-               const Scene& scene)
+Export::Export(const std::vector<Folder>& folders, double rate, Scene& scene)
     : rate_(rate), frames_(scene.stepper(), [this](const Frame& f) {
         for (FrameFolder& folder : folders_) folder.add(f);
         written_ = f.time;

@@ -87,7 +87,7 @@ class Export {
   /** The frames of @a scene are written by its steps, once they are settled.
    * @param rate frames a second of simulated time [1/s], > 0
    * Throws std::runtime_error "FOLDER: why". */
-  Export(const std::vector<Folder>& folders, double rate, const Scene& scene);
+  Export(const std::vector<Folder>& folders, double rate, Scene& scene);
 
   bool empty() const { return folders_.empty(); }
   /** True if the next frame is due at the time of @a scene: half a step early

@@ -26,13 +26,13 @@ Run::Run(Scene& scene, const Options& o)
     : scene_(scene),
       o_(o),
       progress_(o.quiet),
-      observer_(o.model, scene),
+      observer_(scene),
       frames_({{FrameFormat::vtp, o.vtp}, {FrameFormat::ply, o.ply}},
               o.frame_rate, scene),
       rows_(scene.stepper(),
             [this](const std::string& row) { write_csv(row), ++written_; }) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
-    scene_.follow_drag();
+    scene_.stepper().follow_drag();
   if (!o.bounds_error) scene_.watch(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
   if (const auto quads = quads_beside(o.out); !quads.empty())
@@ -47,7 +47,7 @@ Run::Run(Scene& scene, const Options& o)
 
 void Run::start() {
   progress_ = Progress(o_.quiet);
-  observer_.restart(o_.model, scene_);
+  observer_.restart();
   seconds_ = next_checkpoint_ = 0, first_step_ = 0;
   rows_.clear(), written_ = 0;
   judged_ = false;
@@ -84,7 +84,7 @@ int Run::steps_to_write() const {
                         (!o_.checkpoint.empty() && o_.every_seconds == 0);
   if (any_step) return 1;
   return int(std::min<long long>(o_.every - scene_.steps() % o_.every,
-                                 Scene::guard_interval));
+                                 Stepper::guard_interval));
 }
 
 void Run::to_end(const std::function<void()>& after) {
@@ -97,7 +97,7 @@ void Run::to_end(const std::function<void()>& after) {
 
 /** After each step. */
 void Run::look() {
-  if (o_.model.measure.over_time()) observer_.look(scene_.model(), scene_);
+  if (observer_.looks()) observer_.look();
   const bool at_end = scene_.done(o_.model.t_end);
   if (csv_ && (at_end || scene_.steps() % o_.every == 0)) scene_.check();
   seconds_ = progress_.seconds();
@@ -369,12 +369,11 @@ void Run::add_row() {
     row += CME212::to_text(a) + ',';
   row += std::to_string(g.num_nodes()) + ',' + std::to_string(g.num_edges());
   const EnergyFlow& flow = scene_.flow();
-  for (double a : {flow.work, flow.drag, scene_.drift(e)})
+  for (double a : {flow.work, flow.drag, scene_.stepper().drift(e)})
     row += ',' + CME212::to_text(a);
   row += ',' + std::to_string(scene_.evaluations());
   if (!columns_of(o_.model.measure).empty())
-    for (double a : lab::answer(scene_.model(), scene_, o_.model.measure))
-      row += ',' + CME212::to_text(a);
+    for (double a : lab::answer(scene_)) row += ',' + CME212::to_text(a);
   rows_.add(row + '\n');
 }
 
@@ -425,9 +424,7 @@ const Verdict* Run::verdict() const {
   if (witness->said() || scene_.failure() || interrupted())
     return witness->said();
   try {
-    const bool asks = o_.model.measure.quantity != Measure::positions;
-    const Answer mine = asks ? answer() : Answer();
-    witness->verdict(asks ? &mine : nullptr);
+    witness->verdict(&observer_);
   } catch (const Interrupted&) {  // it was not compared
   }
   return witness->said();

@@ -38,7 +38,7 @@ class Run {
   /** True at the end, if the run failed, or if a signal ends it. */
   bool done() const;
   /** The answer to the scene's question so far: Observer::answer(). */
-  Answer answer() const { return observer_.answer(scene_.model(), scene_); }
+  Answer answer() const { return observer_.answer(); }
   /** True if a signal ended the run before its end. */
   bool cut_short() const;
 

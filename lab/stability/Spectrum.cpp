@@ -159,32 +159,4 @@ double SharpOmega::operator()(const Cloth& g, const ForcePlan& force,
   return std::sqrt(std::max(0.0, top.value));
 }
 
-double omega_gershgorin(const Cloth& g, const ForcePlan& force,
-                        const ConstraintPlan& constraint) {
-  using namespace spectrum_detail;
-  std::vector<spectrum_detail::Spring> springs;
-  std::vector<double> scale;
-  find_springs(g, force, springs);
-  find_scales(g, constraint, scale);
-  std::vector<Eigen::Matrix3d> sum(arrays(g).node_slots(),
-                                   Eigen::Matrix3d::Zero());
-  for (const spectrum_detail::Spring& s : springs) {
-    const double along = std::max(0.0, s.B.along);
-    const double across = std::max(0.0, s.B.across);
-    const Eigen::Vector3d n(s.B.direction.x, s.B.direction.y, s.B.direction.z);
-    const Eigen::Matrix3d B = across * Eigen::Matrix3d::Identity() +
-                              (along - across) * n * n.transpose();
-    sum[s.i] += (scale[s.j] > 0 ? 2 : 1) * B;
-    sum[s.j] += (scale[s.i] > 0 ? 2 : 1) * B;
-  }
-  double top = 0;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of_node;
-  for (unsigned i = 0; i < sum.size(); ++i) {
-    if (scale[i] == 0) continue;
-    of_node.computeDirect(sum[i], Eigen::EigenvaluesOnly);
-    top = std::max(top, scale[i] * scale[i] * of_node.eigenvalues()[2]);
-  }
-  return std::sqrt(top);
-}
-
 }  // namespace lab

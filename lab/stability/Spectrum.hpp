@@ -3,7 +3,7 @@
  * The highest frequency omega [1/s] of a cloth: omega^2 is the largest
  * eigenvalue of M^-1 H, M the masses, H the stiffness of all springs, both of
  * the nodes that are not held. It bounds the step of every explicit method
- * (StepLimit.hpp). Three estimates; the proofs are in README.md beside this.
+ * (StepLimit.hpp). Two estimates; the proofs are in README.md beside this.
  *
  * A force without SweptForce::add_stiffness() is taken to have the stiffness of
  * the cloth's edges. Without springs or free nodes, omega is 0. */
@@ -57,15 +57,5 @@ class SharpOmega {
   std::vector<spectrum_detail::Spring> springs_;
   std::vector<double> scale_;
 };
-
-/** The cheap estimate: an upper bound of the highest frequency in the present
- * configuration, up to a third too high. By Gershgorin's theorem for blocks:
- * (a - b) B (a - b) <= 2 a B a + 2 b B b, so omega^2 is at most the largest
- * eigenvalue over all nodes of 2 sum B/m over the springs at the node; a spring
- * to a held node counts once. Negative stiffness counts as 0. The stability map
- * scales its initial perturbation by it.
- * Complexity: O(N + springs), two or three force evaluations. */
-double omega_gershgorin(const Cloth& g, const ForcePlan& force,
-                        const ConstraintPlan& constraint);
 
 }  // namespace lab

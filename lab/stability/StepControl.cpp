@@ -18,7 +18,8 @@ constexpr double at_rest = 1e-6;  // of the largest energy of motion: none
 StepControl::StepControl(double dt, const Energies& start, const Limits& limits,
                          const EnergyFlow& flow)
     : first_(dt), shortest_(dt / 64), limits_(limits), report_{dt, dt} {
-  static_cast<Swings&>(now_) = Swings(start, flow, dt);
+  now_.scale = start.internal(), now_.fall = 2 * start.fall_power * dt;
+  now_.last = now_.least = balance(start, flow);
   now_.dt = dt, now_.ceiling = now_.low = none;
   now_.base = now_.mark = now_.last;
   now_.drag = now_.lost = flow.drag, now_.kinetic = start.kinetic;
@@ -26,7 +27,9 @@ StepControl::StepControl(double dt, const Energies& start, const Limits& limits,
 }
 
 void StepControl::State::archive(Archive& a) {
-  Swings::archive(a);
+  for (double* x : {&scale, &fall, &last, &least, &sum, &gain})
+    a(*x).require(std::isfinite(*x));
+  a(looks).require(0 <= looks && looks < round);
   for (double* x : {&dt, &ceiling, &base, &low, &mark, &time, &kinetic_time,
                     &drag, &lost, &kinetic, &fall_power})
     // Bounds that are not set yet are infinite.
@@ -68,9 +71,12 @@ StepControl::Verdict StepControl::look(const Energies& e,
   const bool good = std::isfinite(b) && !bursts && !creeps && !beyond;
   if (!good && can_shorten()) return Verdict::take_back;
   if (!std::isfinite(b)) return Verdict::go_on;  // the guard ends it
-  const bool ends = s.add(b);
+  s.last = b, s.sum += b;
+  s.gain = std::max(s.gain, b - s.least);
   now_ = s;
-  if (!ends) return Verdict::go_on;
+  if (++now_.looks < round) return Verdict::go_on;
+  now_.least = std::min(s.least, s.sum / round);
+  now_.looks = 0, now_.sum = 0;
   now_.base = std::exchange(now_.low, none);
   ++now_.rounds, ++now_.calm, ++now_.since;
   return Verdict::keep;
@@ -82,7 +88,8 @@ void StepControl::forget(State& s, const Energies& e, const EnergyFlow& flow) {
   const double more_fall = std::abs(e.fall_power - s.fall_power) * s.dt;
   s.lost = flow.drag, s.kinetic = e.kinetic, s.fall_power = e.fall_power;
   if (!(lost > 0 && twice_mean > 0)) {
-    s.measure(e, s.dt);
+    s.scale = std::max(s.scale, e.internal());
+    s.fall = std::max(s.fall, 2 * e.fall_power * s.dt);
     return;
   }
   limits_.rest = std::max(limits_.rest, at_rest * e.internal());

@@ -7,48 +7,6 @@
 
 namespace lab {
 
-/** The balance b of a run until now [J].
- *
- * With a symplectic method the energy of an oscillation swings by a share of
- * O((dt omega)^2). So gains are measured from the least of the initial b and of
- * the means of all rounds of 8 looks. */
-struct Swings {
-  static constexpr int round = 8;  ///< looks
-
-  double scale = 0;            ///< largest internal energy
-  double fall = 0;             ///< gravity's work in two steps, if loose
-  double last = 0, least = 0;  ///< b: now, and its least mean over a round
-  double sum = 0;              ///< of b over this round
-  double gain = 0;             ///< largest b - least
-  int looks = 0;               ///< in this round
-
-  Swings() = default;
-  /** @param dt the step [s] */
-  Swings(const Energies& e, const EnergyFlow& flow, double dt)
-      : scale(e.internal()), fall(2 * e.fall_power * dt) {
-    last = least = balance(e, flow);
-  }
-  /** Compare with the largest energies so far. */
-  void measure(const Energies& e, double dt) {
-    scale = std::max(scale, e.internal());
-    fall = std::max(fall, 2 * e.fall_power * dt);
-  }
-  /** Take @a b into account.  @return true at the end of a round */
-  bool add(double b) {
-    last = b, sum += b;
-    gain = std::max(gain, last - least);
-    if (++looks < round) return false;
-    least = std::min(least, sum / round);
-    looks = 0, sum = 0;
-    return true;
-  }
-  void archive(Archive& a) {
-    a(scale)(fall)(last)(least)(sum)(gain)(looks);
-    a.require(std::isfinite(scale + fall + last + least + sum + gain) &&
-              0 <= looks && looks < round);
-  }
-};
-
 /** Chooses the step by the change of the energy in the last steps.
  *
  * The exact motion never raises the balance b of EnergyBalance. A method may
@@ -75,8 +33,18 @@ struct Swings {
 class StepControl {
  public:
   static constexpr int look_interval = 16;  ///< steps between two looks
+  /** Looks in a round. With a symplectic method the energy of an oscillation
+   * swings by a share of O((dt omega)^2). So gains are measured from the least
+   * of the initial b and of its means over all rounds. */
+  static constexpr int round = 8;
   /** The measurements of the control: energies in J, times in s. */
-  struct State : Swings {        // scale and gain decay with drag
+  struct State {
+    double scale = 0;            ///< largest internal energy; decays with drag
+    double fall = 0;             ///< gravity's work in two steps, if loose
+    double last = 0, least = 0;  ///< b: now, and its least mean over a round
+    double sum = 0;              ///< of b over this round
+    double gain = 0;             ///< largest b - least; decays with drag
+    int looks = 0;               ///< in this round
     double dt = 0, ceiling = 0;  ///< the step, and its upper bound for now
     double base = 0, low = 0;    ///< b: least in the last round, in this
     double mark = 0;             ///< b: when dt changed

@@ -1,7 +1,5 @@
 #include "lab/stepping/Changes.hpp"
 
-#include <stdexcept>
-
 #include "CME212/Util.hpp"
 #include "lab/scenes/KeyValues.hpp"
 #include "lab/stepping/Scene.hpp"
@@ -32,16 +30,8 @@ Requests<Scene> make_table() {
   Requests<Scene> table;
   constexpr auto plain = Requests<Scene>::plain;
   // From now on by this method; the step stays.
-  table.on("method", plain, [](Scene& s, const MethodEntry* m) {
-    TimeStep step = s.stepper().time_step();
-    if (step.fixed()) step.dt = s.dt();
-    try {
-      s.change_method(*m, step);
-    } catch (const std::invalid_argument&) {  // it can't choose
-      step.dt = s.dt(), step.rule = StepRule::fixed;
-      s.change_method(*m, step);
-    }
-  });
+  table.on("method", plain,
+           [](Scene& s, const MethodEntry* m) { s.take_method(*m); });
   // K [N/m], or the modulus of a scene that has one; rest lengths stay.
   sets(table, "stiffness", "0 N/m or more", 0, [](Model& m) -> double& {
     return m.material.modulus ? *m.material.modulus : m.stiffness;

@@ -1,6 +1,7 @@
 #include "lab/stepping/Scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -9,39 +10,32 @@
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Interrupt.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
-
-SceneParts::SceneParts(const Model& m, Net mesh)
-    : made_of_(m), model_(m), mesh_{std::move(mesh), {}} {
-  build();
-}
-SceneParts::SceneParts(const SceneParts& other)
-    : made_of_(other.made_of_),
-      model_(other.model_),
-      mesh_(other.mesh_),
-      built_(other.built_),
-      held_(other.held_) {
-  hold();
-}
 
 Scene::Scene(const Model& m) : Scene(m, mesh_of(m)) {}
 Scene::Scene(const Model& m, Net mesh)
     : Scene(m, std::move(mesh), m.step, *m.method) {}
 Scene::Scene(const Model& m, Net mesh, const TimeStep& step,
              const MethodEntry& method)
-    : SceneParts(m, std::move(mesh)),
-      Stepper(built_, step, method),
+    : made_of_(m),
+      model_(m),
+      mesh_{std::move(mesh), {}},
+      stepper_(build(), step, method),
       first_(method),
       changes_(read_changes(m.at)) {
-  confirm_by([this](const Energies& e) { return confirms(e); });
-  await_change();
+  begin();
 }
 
 Scene::Scene(const Scene& other, const TimeStep& step,
              const MethodEntry& method)
-    : SceneParts(other),
-      Stepper(built_, step, method, other.time()),
+    : made_of_(other.made_of_),
+      model_(other.model_),
+      mesh_(other.mesh_),
+      held_(other.held_),
+      built_(other.built_),
+      stepper_(hold(), step, method, other.time()),
       first_(method),
       changes_(other.changes_.begin() + std::ptrdiff_t(other.made_),
                other.changes_.end()),
@@ -49,13 +43,17 @@ Scene::Scene(const Scene& other, const TimeStep& step,
   if (method.info.name != other.method().name)
     std::erase_if(changes_,
                   [](const Change& c) { return c.name() == "method"; });
-  if (other.follows_drag()) follow_drag();
-  confirm_by([this](const Energies& e) { return confirms(e); });
+  if (other.stepper_.follows_drag()) stepper_.follow_drag();
+  begin();
+}
+
+void Scene::begin() {
+  stepper_.confirm_by([this](const Energies& e) { return confirms(e); });
   await_change();
 }
 
-/** Build the system as it starts. */
-void SceneParts::build() {
+/** Build the system as it starts.  @return it */
+System& Scene::build() {
   Cloth& g = built_.cloth;
   g.clear();
   build_model(g, model_, mesh_.mesh);
@@ -71,26 +69,28 @@ void SceneParts::build() {
   if (const auto& most = model_.tear_strain)
     for (Edge e : g.edges())
       built_.overlaps |= e.length() > (1 + *most) * e.value().L;
+  return built_;
 }
 
-void SceneParts::take_forces(CombinedForces acting) {
+void Scene::take_forces(CombinedForces acting) {
   built_.acting = std::move(acting), built_.gravity = model_.gravity;
   built_.wind = model_.wind ? model_.wind->velocity : Point();
 }
 
-/** Make the constraint anew, with the pins held_. */
-void SceneParts::hold() {
+/** Make the constraint anew, with the pins held_.  @return the system */
+System& Scene::hold() {
   built_.overlaps = false;
   built_.watched.emplace(constraint_of(model_, built_.cloth, held_));
+  return built_;
 }
 
 void Scene::restart() {
   changed_ = false, diagnosis_.reset(), made_ = 0;
   if (first_.info.name != method().name)
-    Stepper::change_method(first_, time_step());
+    stepper_.change_method(first_, stepper_.time_step());
   model_ = made_of_;
   build();
-  Stepper::restart();
+  stepper_.restart();
   await_change();
   if (witness_) witness_->restart();
 }
@@ -99,18 +99,18 @@ void Scene::restart() {
 
 template <typename Change>
 void Scene::edit(Change change) {
-  Stepper::edit(change);
+  stepper_.edit(change);
   note_change(true);
 }
 
 void Scene::change_method(const MethodEntry& method, const TimeStep& step) {
-  Stepper::change_method(method, step);
+  stepper_.change_method(method, step);
   if (!makes_) first_ = method;
   note_change(steps() > 0);
 }
 
 void Scene::take_method(const MethodEntry& method) {
-  TimeStep step = time_step();
+  TimeStep step = stepper_.time_step();
   if (step.fixed()) step.dt = dt();
   try {
     change_method(method, step);
@@ -121,8 +121,8 @@ void Scene::take_method(const MethodEntry& method) {
 }
 
 void Scene::fit_step() {
-  if (!time_step().fixed() && dt() > safe_limit())
-    change_method(method_entry(), time_step());
+  if (!stepper_.time_step().fixed() && dt() > safe_limit())
+    change_method(stepper_.method_entry(), stepper_.time_step());
 }
 
 /** @param by_hand it is a change that no finer run makes by itself */
@@ -135,8 +135,8 @@ void Scene::note_change(bool by_hand) {
 
 /** Let the next change of Model::at come when it is due. */
 void Scene::await_change() {
-  at(changes_left() > 0 ? changes_[made_].time : no_limit,
-     [this] { make_change(); });
+  stepper_.at(changes_left() > 0 ? changes_[made_].time : no_limit,
+              [this] { make_change(); });
 }
 
 void Scene::make_change() {
@@ -151,7 +151,7 @@ void Scene::make_change() {
 Scene::Limit Scene::least_limit() const {
   Limit least = {safe_limit()};
   if (changes_.empty()) return least;
-  Scene ahead(made_of_, mesh_.mesh, time_step(), first_);
+  Scene ahead(made_of_, mesh_.mesh, stepper_.time_step(), first_);
   while (ahead.changes_left() > 0) {
     const double since = ahead.changes_[ahead.made_].time;
     ahead.make_change();
@@ -178,8 +178,8 @@ void Scene::archive(Archive& a) {
   }
   for (HeldNodes& h : held_)
     for (auto& [id, place] : h.nodes) a(place);
-  if (a.loads() && made_ > 0) Stepper::edit([this] { hold(); });
-  Stepper::archive(a);
+  if (a.loads() && made_ > 0) stepper_.edit([this] { hold(); });
+  stepper_.archive(a);
   Witness::archive(a, witness_.get());
 }
 
@@ -188,13 +188,13 @@ void Scene::change_forces(const Model& m) {
   build_model(fresh, m, mesh_.mesh);
   CombinedForces acting = force_of(m, mesh_.mesh, fresh);
   if (!makes_) made_of_ = m;
-  Stepper::edit([&] {
+  stepper_.edit([&] {
     model_ = m;
     take_forces(std::move(acting));
     for (Edge e : cloth().edges())
       e.value().K = arrays(fresh).edge_values()[e.id()].K;
-    forget_limits();
-    make_method();
+    stepper_.forget_limits();
+    stepper_.make_method();
   });
   note_change(steps() > 0);
 }
@@ -233,7 +233,7 @@ bool Scene::unpin(unsigned node) {
                     [node](const auto& held) { return held.id == node; });
     std::erase_if(held_, [](const HeldNodes& h) { return h.nodes.empty(); });
     hold();
-    forget_limits();
+    stepper_.forget_limits();
   });
   return true;
 }
@@ -270,7 +270,7 @@ void Scene::release() { pull(std::nullopt); }
 
 /** Continue with @a hand, or with none. */
 void Scene::pull(std::optional<HandForce> hand) {
-  set_hand(std::move(hand));
+  stepper_.set_hand(std::move(hand));
   changed_ = true;
   if (witness_) witness_->change();
 }
@@ -289,6 +289,63 @@ std::string Scene::missed_text() const {
          " s and would have tunnelled through an obstacle; it was put on the "
          "surface. Use --dt " +
          short_text(share * dt());
+}
+
+namespace {
+
+FailedRun failed_run(const Scene& s) {
+  const Stepper& stepper = s.stepper();
+  const MethodEntry& method = stepper.method_entry();
+  const auto& failure = s.failure();  // none: its energy is wrong
+  FailedRun run = {.method = method, .dt = s.dt(), .time = no_limit};
+  if (failure && failure->kind == Failure::Kind::start) return run;
+  run.time = std::min(s.time() + s.dt(), stepper.t_end());
+  run.solver = failure && failure->kind == Failure::Kind::refused;
+  run.sharp = stepper.sharp_limit(40);
+  run.safe = s.safe_limit();
+  run.safe_without_drag = stepper.limits().safe_without_drag(method);
+  run.verlet = s.safe_limit(table::verlet);
+  run.flat = is_flat(s.cloth());
+  const Verdict* verdict = s.witness() ? s.witness()->said() : nullptr;
+  run.rigid =
+      !failure && verdict &&
+      (verdict->scale <= verdict->slack || verdict->gain > 2 * verdict->mine);
+  if (failure || !verdict) return run;
+  if (!verdict->has_answer()) run.asked = verdict->asked;
+  if (!verdict->gains() && !verdict->is_off()) run.apart = verdict->apart;
+  return run;
+}
+
+/** Run with @a cure until @a t_end, or until it took @a left, and let a witness
+ * judge that run: one that does not fail may still be wrong. */
+Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
+                double left) {
+  try {
+    const auto trial = failed.anew(cure);
+    t_end = std::min(t_end, trial->time() + left / trial->work_of(1) * cure.dt);
+    trial->watch(t_end, true);
+    Observer observer(*trial);
+    if (!trial->run_to(t_end, observer.after_steps()))
+      return {false, trial->time()};
+    if (!trial->witness()) return {true, trial->time()};
+    const Verdict& v = trial->witness()->verdict(&observer);
+    return {!v.gains() && !v.was_off(), trial->time(), v.apart, v.answer};
+  } catch (const std::invalid_argument&) {  // not with this force
+    return {false, 0};
+  }
+}
+
+}  // namespace
+
+const Diagnosis& Scene::diagnosis() const {
+  if (diagnosis_) return *diagnosis_;
+  const FailedRun run = failed_run(*this);
+  const double t_end = stepper_.t_end();
+  const bool ends = std::isfinite(t_end);  // else somebody waits for the cure
+  const double end = ends ? t_end : std::max(5., 2 * run.time);
+  return diagnosis_.emplace(diagnose(run, [&](const Cure& cure) {
+    return attempt(*this, cure, end, trial_work);
+  }));
 }
 
 Explanation Scene::explanation() const {
@@ -315,13 +372,19 @@ void Scene::watch(double t_end, bool whole) {
     witness_ = std::make_unique<Witness>(*this, t_end, whole);
 }
 
+const Verdict* Scene::wrong() const {
+  if (failure() || control() || !witness_) return nullptr;
+  const Verdict& verdict = witness_->verdict();
+  return verdict.wrong() ? &verdict : nullptr;
+}
+
 /** @a share of the present step; of steps that are chosen, of the mean one. */
 TimeStep Scene::finer_step(double share) const {
   constexpr double usual = 1e-6, stricter = 16;  // RungeKutta
   TimeStep step = {.dt = share * dt()};
   if (control() && steps() > 0)
     step.dt = share * std::min(dt(), time() / double(steps()));
-  if (const double t = time_step().tolerance; method().adaptive)
+  if (const double t = stepper_.time_step().tolerance; method().adaptive)
     step.tolerance = (t > 0 ? t : usual) / (share < 1 ? stricter : 1);
   return step;
 }
@@ -330,14 +393,14 @@ std::unique_ptr<Scene> Scene::finer() const {
   if (changed_) return branch(0.5);
   auto finer =
       std::make_unique<Scene>(made_of_, mesh_.mesh, finer_step(0.5), first_);
-  finer->confirm_by([](const Energies&) { return true; });
+  finer->stepper_.confirm_by([](const Energies&) { return true; });
   return finer;
 }
 
 std::unique_ptr<Scene> Scene::branch(double share) const {
-  auto branch =
-      std::make_unique<Scene>(*this, finer_step(share), method_entry());
-  branch->confirm_by([](const Energies&) { return true; });
+  auto branch = std::make_unique<Scene>(*this, finer_step(share),
+                                        stepper_.method_entry());
+  branch->stepper_.confirm_by([](const Energies&) { return true; });
   return branch;
 }
 
@@ -349,7 +412,7 @@ bool Scene::confirms(const Energies& e) const {
     return false;
   try {
     const auto other = kept ? kept->branch(1) : finer();
-    if (other->time() >= time() || !run_until(*other, time())) return false;
+    if (other->time() >= time() || !other->run_to(time())) return false;
     const double mine = e.internal(), there = other->energy().internal();
     return mine <= same * there && there <= same * mine;
   } catch (const Interrupted&) {
@@ -358,9 +421,10 @@ bool Scene::confirms(const Energies& e) const {
 }
 
 std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
-  const TimeStep step = {
-      .dt = cure.dt,
-      .tolerance = cure.method.info.adaptive ? time_step().tolerance : 0};
+  const TimeStep step = {.dt = cure.dt,
+                         .tolerance = cure.method.info.adaptive
+                                          ? stepper_.time_step().tolerance
+                                          : 0};
   if (!changed_)
     return std::make_unique<Scene>(made_of_, mesh_.mesh, step, cure.method);
   const Scene* kept = witness_ ? witness_->kept() : nullptr;
@@ -370,9 +434,10 @@ std::unique_ptr<Scene> Scene::anew(const Cure& cure) const {
 std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
   const auto copy = [this] {
     auto scene = std::make_unique<Scene>(
-        *this, TimeStep{.dt = dt(), .tolerance = time_step().tolerance},
-        method_entry());
-    scene->set_failure(failure());
+        *this,
+        TimeStep{.dt = dt(), .tolerance = stepper_.time_step().tolerance},
+        stepper_.method_entry());
+    scene->stepper_.set_failure(failure());
     return scene;
   };
   auto ahead = copy();
@@ -384,9 +449,10 @@ std::unique_ptr<Scene> Scene::beyond_failure(double distance) const {
         return true;
     return false;
   };
-  for (int left = 1000; left > 0 && !is_far() && ahead->advance(); --left)
+  for (int left = 1000; left > 0 && !is_far() && ahead->stepper_.advance();
+       --left)
     if (interrupted()) break;
-  return ahead->is_finite() ? std::move(ahead) : copy();
+  return ahead->stepper_.is_finite() ? std::move(ahead) : copy();
 }
 
 }  // namespace lab

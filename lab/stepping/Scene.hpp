@@ -16,23 +16,8 @@
 
 namespace lab {
 
-/** The cloth of a model, and what acts on it: what a Scene steps. */
-class SceneParts {
- protected:
-  Model made_of_, model_;  // at the start; now
-  BuiltMesh mesh_;
-  System built_;
-  std::vector<HeldNodes> held_;
-
-  SceneParts(const Model& m, Net mesh);
-  SceneParts(const SceneParts& other);
-  void build();
-  void take_forces(CombinedForces acting);
-  void hold();
-};
-
 /** A scene, ready to run. */
-class Scene : private SceneParts, private Stepper {
+class Scene {
  public:
   /** The scene of @a m at t = 0. If nodes lie inside obstacles, or springs are
    * strained so that they break, all constraints act once: their work is in
@@ -90,19 +75,42 @@ class Scene : private SceneParts, private Stepper {
   /** As that of Stepper. What was changed by hand is not saved. */
   void archive(Archive& a);
 
-  const Stepper& stepper() const { return *this; }
-  using Stepper::check, Stepper::control, Stepper::done, Stepper::drift,
-      Stepper::dt, Stepper::energy, Stepper::evaluations, Stepper::failure,
-      Stepper::flow, Stepper::follow_drag, Stepper::guard_interval,
-      Stepper::lost, Stepper::method, Stepper::run_to, Stepper::safe_limit,
-      Stepper::settle, Stepper::settled_steps, Stepper::step, Stepper::steps,
-      Stepper::steps_at_once, Stepper::time;
+  /** What moves it: for all that is asked of a run. Below is what most ask. */
+  Stepper& stepper() { return stepper_; }
+  const Stepper& stepper() const { return stepper_; }
+  bool step(double t_end = no_limit) { return stepper_.step(t_end); }
+  bool steps_at_once(int most, double t_end = no_limit) {
+    return stepper_.steps_at_once(most, t_end);
+  }
+  bool run_to(double t_end, const std::function<void()>& after = {}) {
+    return stepper_.run_to(t_end, after);
+  }
+  bool done(double t_end) const { return stepper_.done(t_end); }
+  bool check() { return stepper_.check(); }
+  const std::optional<Failure>& failure() const { return stepper_.failure(); }
+  const MethodInfo& method() const { return stepper_.method(); }
+  double safe_limit() const { return stepper_.safe_limit(); }
+  double safe_limit(const MethodEntry& m) const {
+    return stepper_.safe_limit(m);
+  }
+  double dt() const { return stepper_.dt(); }
+  const std::optional<StepControl>& control() const {
+    return stepper_.control();
+  }
+  long long steps() const { return stepper_.steps(); }
+  double time() const { return stepper_.time(); }
+  long long evaluations() const { return stepper_.evaluations(); }
+  Energies energy() const { return stepper_.energy(); }
+  const EnergyFlow& flow() const { return stepper_.flow(); }
 
   /** From now on witness() looks at the run, unless its method was added: that
    * may not run twice.  @param t_end, whole as there */
   void watch(double t_end, bool whole = false);
   /** Null: there is none. */
   const Witness* witness() const { return witness_.get(); }
+  /** The verdict on a run of fixed steps, if it is wrong: ./cloth ends with
+   * status 3. Else null.  Throws Interrupted */
+  const Verdict* wrong() const;
   /** Was there a change since the start that model() does not tell? */
   bool was_changed() const { return changed_; }
   /** This run with half of its step: from its start, or from the present state
@@ -180,6 +188,11 @@ class Scene : private SceneParts, private Stepper {
   std::unique_ptr<Scene> beyond_failure(double distance) const;
 
  private:
+  Model made_of_, model_;  // at the start; now
+  BuiltMesh mesh_;
+  std::vector<HeldNodes> held_;
+  System built_;
+  Stepper stepper_;
   MethodEntry first_;                           // before changes_
   std::vector<Change> changes_;                 // of Model::at
   std::size_t made_ = 0;                        // of changes_
@@ -188,6 +201,10 @@ class Scene : private SceneParts, private Stepper {
   mutable std::optional<Diagnosis> diagnosis_;  // if it was asked for
   std::unique_ptr<Witness> witness_;
 
+  System& build();
+  System& hold();
+  void take_forces(CombinedForces acting);
+  void begin();
   template <typename Change>
   void edit(Change change);
   void pull(std::optional<HandForce> hand);

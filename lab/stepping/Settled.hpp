@@ -20,7 +20,7 @@ class Settled final : public SettledReader {
   using Read = std::function<void(const T&)>;
   /** @param read called with the notes in their order, by the steps of
    * @a stepper, which must live longer */
-  Settled(const Stepper& stepper, Read read)
+  Settled(Stepper& stepper, Read read)
       : stepper_(stepper), read_(std::move(read)) {
     stepper_.tell(this);
   }
@@ -76,7 +76,7 @@ class Settled final : public SettledReader {
     long long step;
     T what;
   };
-  const Stepper& stepper_;
+  Stepper& stepper_;
   Read read_;
   std::deque<Note> waiting_;
   long long read_steps_ = -1;  // the step of the last note that was read

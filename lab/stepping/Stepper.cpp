@@ -8,6 +8,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/scenes/Interrupt.hpp"
 #include "lab/stepping/Checkpoint.hpp"
 
 namespace lab {
@@ -147,6 +148,7 @@ bool Stepper::run_to(double t_end, const std::function<void()>& after) {
   while (!done(t_end)) {
     steps_at_once(after ? 1 : guard_interval, t_end);
     if (after) after();
+    end_if_interrupted();
   }
   return check();
 }

@@ -96,7 +96,8 @@ class Stepper {
   bool steps_at_once(int most, double t_end = no_limit);
   /** Step until done(@a t_end). Call @a after(), if there is one, after each
    * step, even if the step failed.
-   * @return as step()   Throws as step(), and what @a after throws. */
+   * @return as step()
+   * Throws as step(), Interrupted, and what @a after throws. */
   bool run_to(double t_end, const std::function<void()>& after = {});
   /** True at the end of a run to @a t_end [s], and if the run failed. */
   bool done(double t_end) const { return failure_ || time() >= t_end; }
@@ -124,10 +125,8 @@ class Stepper {
     return control_ ? before_.clock.steps : checked_.steps;
   }
   /** Tell @a reader after each step, or no more. */
-  void tell(SettledReader* reader) const { readers_.push_back(reader); }
-  void tell_no_more(SettledReader* reader) const {
-    std::erase(readers_, reader);
-  }
+  void tell(SettledReader* reader) { readers_.push_back(reader); }
+  void tell_no_more(SettledReader* reader) { std::erase(readers_, reader); }
   /** nullopt if the step is fixed. */
   const std::optional<StepControl>& control() const { return control_; }
   Energies energy() const {
@@ -260,7 +259,7 @@ class Stepper {
   Work work_;                     // of earlier methods
   double start_energy_ = 0;       // [J]
   std::string error_;             // of the method
-  mutable std::vector<SettledReader*> readers_;
+  std::vector<SettledReader*> readers_;
 
   double remove_overlaps();
   void start(const EnergyFlow& flow);

@@ -6,14 +6,14 @@
 #include <random>
 
 #include "CME212/Util.hpp"
-#include "lab/scenes/Interrupt.hpp"
 
 namespace lab {
 
-Answer answer(const Model& m, const Scene& scene, const Measure& what) {
+Answer answer(const Scene& scene, const Measure& what) {
   return quantities[what.quantity].read(
-      {m, scene.cloth(), scene.time(), &scene.held(), &scene.force(),
-       what.quantity == Measure::lost_energy ? scene.lost() : 0,
+      {scene.model(), scene.cloth(), scene.time(), &scene.held(),
+       &scene.force(),
+       what.quantity == Measure::lost_energy ? scene.stepper().lost() : 0,
        scene.stepper().pulls()},
       what);
 }
@@ -99,26 +99,30 @@ void TimeSeries::archive(Archive& a) {
             std::isfinite(sum_ + span_ + first_ + left_));
 }
 
-Observer::Observer(const Model& m, const Scene& scene)
-    : looks_(scene.stepper(),
+Observer::Observer(Scene& scene, const Measure& what)
+    : scene_(scene),
+      what_(what),
+      looks_(scene.stepper(),
              [this](const Look& l) { settled_.add(what_, l.time, l.value); }) {
-  restart(m, scene);
+  restart();
 }
 
-void Observer::restart(const Model& m, const Scene& scene) {
-  what_ = m.measure, settled_ = {}, looks_.clear();
+void Observer::restart() {
+  settled_ = {}, looks_.clear();
   if (what_.quantity == Measure::positions) return;
-  check_question(m);
-  look(m, scene);
+  Model asked = scene_.model();
+  asked.measure = what_;
+  check_question(asked);
+  look();
 }
 
-void Observer::look(const Model& m, const Scene& scene) {
-  const Answer now = lab::answer(m, scene, what_);
-  if (what_.over_time()) looks_.add({scene.time(), now[0]});
+void Observer::look() {
+  const Answer now = lab::answer(scene_, what_);
+  if (looks()) looks_.add({scene_.time(), now[0]});
 }
 
-Answer Observer::answer(const Model& m, const Scene& scene) const {
-  if (!what_.over_time()) return lab::answer(m, scene, what_);
+Answer Observer::answer() const {
+  if (!looks()) return lab::answer(scene_, what_);
   TimeSeries all = settled_;
   looks_.each_waiting([&](const Look& l) { all.add(what_, l.time, l.value); });
   return all.answer(what_);
@@ -152,22 +156,21 @@ Trial try_out(const Model& m, const Shake& shake,
     // The guard starts anew: it would take these strains for a divergence.
     scene.change_method(*m.method, {.dt = result.dt});
   }
-  Observer observer(m, scene);
+  Observer observer(scene);
   const double springs = double(scene.cloth().num_edges()),
                factor = factor_sweeps(scene.cloth());
   const bool ok = scene.run_to(m.t_end, [&] {
-    end_if_interrupted();
     after(scene);
-    if (m.measure.over_time()) observer.look(m, scene);
+    if (observer.looks()) observer.look();
     const auto due =
         std::min(std::size_t(scene.time() / m.t_end * Trial::looks),
                  std::size_t(Trial::looks - 1));
     if (result.earlier.size() < due)
-      result.earlier.resize(due, observer.answer(m, scene));
+      result.earlier.resize(due, observer.answer());
   });
   result.failure = text_of(scene.failure());
   if (ok) {
-    result.answer = observer.answer(m, scene);
+    result.answer = observer.answer();
     if (result.answer.empty())
       result.failure = (m.measure.quantity == Measure::tear_time
                             ? "nothing tears"

@@ -16,7 +16,11 @@ namespace lab {
 /** The value of any quantity in the present state of @a scene; the time of a
  * tear is infinite while nothing has torn.
  * Throws SceneError: pin-force where no pin holds a node */
-Answer answer(const Model& m, const Scene& scene, const Measure& what);
+Answer answer(const Scene& scene, const Measure& what);
+/** The same of the measure of its model. */
+inline Answer answer(const Scene& scene) {
+  return answer(scene, scene.model().measure);
+}
 
 /** A number over time, reduced to what a Measure asks of it. Between two times
  * it is taken to be linear, and around a maximum a parabola. */
@@ -44,19 +48,27 @@ class TimeSeries {
   std::vector<Sample> extrema_;   // maxima and minima, of a period
 };
 
-/** Answers the question of a scene that runs: looks at each state, if the
+/** Answers a question about a scene that runs: looks at each state, if the
  * answer depends on all of them. Steps that are taken back are forgotten. */
 class Observer {
  public:
-  /** Looks at the present state of @a scene, a scene of @a m, which must live
-   * longer.  Throws as answer() */
-  Observer(const Model& m, const Scene& scene);
+  /** Looks at the present state of @a scene, which must live longer, for the
+   * answer to the question of its model, or to @a what.  Throws as answer() */
+  explicit Observer(Scene& scene) : Observer(scene, scene.model().measure) {}
+  Observer(Scene& scene, const Measure& what);
   /** Begin anew, as the run does.  Throws as answer() */
-  void restart(const Model& m, const Scene& scene);
-  /** Call it after each step if m.measure.over_time().  As long as answer() */
-  void look(const Model& m, const Scene& scene);
+  void restart();
+  /** Does the answer depend on all states? */
+  bool looks() const { return what_.over_time(); }
+  /** Call it after each step if looks().  As long as answer() */
+  void look();
+  /** What to call after each step, for run_to(): look(), if it looks(); else
+   * nothing, so that steps may be many at once. */
+  std::function<void()> after_steps() {
+    return looks() ? [this] { look(); } : std::function<void()>();
+  }
   /** The answer so far; empty if what it asks about did not happen. */
-  Answer answer(const Model& m, const Scene& scene) const;
+  Answer answer() const;
   void archive(Archive& a) { a(settled_)(looks_); }
 
  private:
@@ -64,7 +76,8 @@ class Observer {
     double time = 0, value = 0;
     void archive(Archive& a) { a(time)(value).require(value == value); }
   };
-  Measure what_;
+  const Scene& scene_;
+  const Measure what_;
   TimeSeries settled_;  // steps that can't be taken back any more
   Settled<Look> looks_;
 };

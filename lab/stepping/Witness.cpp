@@ -90,15 +90,6 @@ double least_energy(const Verdict& v) {
 
 }  // namespace
 
-bool run_until(Scene& s, double time, const std::function<void()>& after) {
-  while (!s.done(time)) {
-    s.steps_at_once(after ? 1 : Scene::guard_interval, time);
-    if (after) after();
-    end_if_interrupted();
-  }
-  return s.check();
-}
-
 // -------------------------------------------------------------------- Verdict
 
 std::string Verdict::text() const {
@@ -157,7 +148,7 @@ Witness::Look::Look(const Scene& s)
   total = e.total(), internal = e.internal(), kinetic = e.kinetic;
 }
 
-Witness::Witness(const Scene& scene, double t_end, bool whole)
+Witness::Witness(Scene& scene, double t_end, bool whole)
     : scene_(scene), t_end_(t_end), asked_whole_(whole) {
   scene_.stepper().tell(this);
   restart();
@@ -240,15 +231,14 @@ void Witness::window() {
     const auto half = d.begin() + std::ptrdiff_t(d.size() / 2);
     drifts_.push_back(2 *
                       (median({half, d.end()}) - median({d.begin(), half})));
-    const Model& m = scene_.model();
-    const Measure& what = m.measure;
+    const Measure& what = scene_.model().measure;
     if (what.over_time() || what.quantity == Measure::positions ||
         what.quantity == Measure::lost_energy)
       return;
     v.asked = name_of(what);
-    v.answer = std::max(
-        v.answer, changed_by(answer(m, scene_, what), answer(m, *finer, what),
-                             what, scene_.cloth(), size(), least_energy(v)));
+    v.answer =
+        std::max(v.answer, changed_by(answer(scene_), answer(*finer), what,
+                                      scene_.cloth(), size(), least_energy(v)));
   } catch (const Interrupted&) {  // the run ends, too
     kept_.reset();
   }
@@ -260,7 +250,7 @@ double Witness::size() const {
   return std::max(side_of(g), double(norm(center_of_mass(g) - from_)));
 }
 
-/** Run @a finer through all looks_, with @a after as of run_until().
+/** Run @a finer through all looks_, with @a after as of run_to().
  * @return what the run has more of energy at each, as an error [J] */
 std::vector<double> Witness::repeat(Scene& finer, Verdict& v, double& slack,
                                     const std::function<void()>& after) const {
@@ -268,7 +258,7 @@ std::vector<double> Witness::repeat(Scene& finer, Verdict& v, double& slack,
   std::vector<double> d;
   const Look* before = nullptr;
   for (const Look& run : looks_) {
-    if (!run_until(finer, run.time, after)) {
+    if (!finer.run_to(run.time, after)) {
       v.failed = true;
       return d;
     }
@@ -301,27 +291,27 @@ void Witness::archive(Archive& a, Witness* w) {
   w->look_again();
 }
 
-const Verdict& Witness::verdict(const Answer* mine) const {
+const Verdict& Witness::verdict(const Observer* asked) const {
   if (!said_ || said_at_ != scene_.steps()) {
-    said_ = whole_ ? judge_whole(mine) : judge_windows();
+    said_ = whole_ ? judge_whole(asked) : judge_windows();
     said_at_ = scene_.steps();
   }
   return *said_;
 }
 
-Verdict Witness::judge_whole(const Answer* mine) const {
+Verdict Witness::judge_whole(const Observer* asked) const {
   Verdict v;
   const Model& m = scene_.model();
   v.sudden = scene_.cloth().num_edges() != edges_;
   try {
     const auto finer = kept_ ? kept_->branch(1) : scene_.finer();
     std::optional<Observer> observer;
-    if (mine) observer.emplace(m, *finer);
-    std::function<void()> look;
-    if (observer && m.measure.over_time())
-      look = [&] { observer->look(finer->model(), *finer); };
+    if (asked && m.measure.quantity != Measure::positions)
+      observer.emplace(*finer);
+    const std::function<void()> look =
+        observer ? observer->after_steps() : nullptr;
     const std::vector<double> d = repeat(*finer, v, v.slack, look);
-    if (!v.failed && !run_until(*finer, scene_.time(), look)) v.failed = true;
+    if (!v.failed) v.failed = !finer->run_to(scene_.time(), look);
     v.cost = sweeps_of(*finer) / std::max(1., sweeps_of(scene_));
     if (v.failed) return v;
     const std::size_t round = std::max<std::size_t>(1, d.size() / windows);
@@ -334,7 +324,7 @@ Verdict Witness::judge_whole(const Answer* mine) const {
     v.apart = distance(scene_.cloth(), finer->cloth(), size());
     if (observer) {
       v.asked = name_of(m.measure);
-      v.answer = changed_by(*mine, observer->answer(m, *finer), m.measure,
+      v.answer = changed_by(asked->answer(), observer->answer(), m.measure,
                             scene_.cloth(), size(), least_energy(v));
     }
   } catch (const std::invalid_argument&) {  // no such step

@@ -12,6 +12,7 @@
 
 namespace lab {
 
+class Observer;
 class Scene;
 
 /** How a run differs from one of half of its step. A difference of energies is
@@ -84,7 +85,7 @@ class Witness final : public SettledReader {
   /** @param scene outlives this   @param t_end end of the run [s]; no_limit:
    * windows as of a run of 5 s, again and again
    * @param whole repeat all; else the cost decides */
-  Witness(const Scene& scene, double t_end, bool whole);
+  Witness(Scene& scene, double t_end, bool whole);
   ~Witness();
 
   /** Looks at the present state, if that is due; at the end of a window,
@@ -98,9 +99,10 @@ class Witness final : public SettledReader {
   /** A finer run that began in an earlier state of this motion; or null. */
   const Scene* kept() const { return kept_.get(); }
   /** The verdict on the run until now, once for each number of steps.
-   * @param mine the answer of the run to its question; null: none was asked
+   * @param asked has the answer of the run to its question, which is compared,
+   * too, unless it is all positions; null: none was asked
    * Throws Interrupted.  Complexity: twice the run; O(1) of windows */
-  const Verdict& verdict(const Answer* mine = nullptr) const;
+  const Verdict& verdict(const Observer* asked = nullptr) const;
   /** Save or load what a whole repetition is compared with.
    * @param w null: save nothing, or forget what is loaded */
   static void archive(Archive& a, Witness* w);
@@ -116,7 +118,7 @@ class Witness final : public SettledReader {
     Look() = default;
     explicit Look(const Scene& s);
   };
-  const Scene& scene_;
+  Scene& scene_;
   double t_end_;
   const bool asked_whole_;
   bool whole_ = false;
@@ -138,13 +140,8 @@ class Witness final : public SettledReader {
   void window();
   std::vector<double> repeat(Scene& finer, Verdict& v, double& slack,
                              const std::function<void()>& after = {}) const;
-  Verdict judge_whole(const Answer* mine) const;
+  Verdict judge_whole(const Observer* asked) const;
   Verdict judge_windows() const;
 };
-
-/** Run @a s to @a time [s], interruptibly. Call @a after(), if there is one,
- * after each step, even if the step failed.  @return false if it failed
- * Throws Interrupted, and what @a after throws. */
-bool run_until(Scene& s, double time, const std::function<void()>& after = {});
 
 }  // namespace lab
