@@ -65,6 +65,8 @@ void SceneParts::build() {
   built_.hand.reset();
   held_ = held_of(model_, mesh_.mesh, g);
   built_.watched.emplace(constraint_of(model_, mesh_.mesh, g));
+  if (model_.from_rest)
+    rest_ = Equilibrium(model_, g, built_.acting, *built_.watched).find();
   built_.overlaps = false;
   for (Node n : g.nodes())
     built_.overlaps |= model_.starts_inside(n.position());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/rest/Equilibrium.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/stepping/Changes.hpp"
 #include "lab/stepping/Stepper.hpp"
@@ -23,6 +24,7 @@ class SceneParts {
   BuiltMesh mesh_;
   System built_;
   std::vector<HeldNodes> held_;
+  std::optional<Rest> rest_;
 
   SceneParts(const Model& m, Net mesh);
   SceneParts(const SceneParts& other);
@@ -62,6 +64,8 @@ class Scene : private SceneParts, private Stepper {
   /** Its model, with the changes of forces. */
   const Model& model() const { return model_; }
   const BuiltMesh& mesh() const { return mesh_; }
+  /** How it was put to rest, if its model begins there. */
+  const std::optional<Rest>& rest() const { return rest_; }
   /** The id of the node of this number in the mesh. */
   unsigned id_of(unsigned number) const {
     return number < mesh_.ids.size() ? mesh_.ids[number] : unsigned(-1);
