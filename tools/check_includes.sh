@@ -17,7 +17,8 @@ lab/fast      : mass_spring
 lab/methods   : lab/fast methods
 lab/stability : lab/methods
 lab/scenes    : lab/methods
-lab/stepping  : lab/scenes lab/stability
+lab/rest      : lab/scenes
+lab/stepping  : lab/rest lab/stability
 lab/advice    : lab/stepping
 lab/charts    : lab/stability lab/scenes
 lab/try       : mass_spring

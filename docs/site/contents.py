@@ -16,7 +16,7 @@ CONTENTS: list[tuple[str, list[str | tuple[str, str]]]] = [
         "lab/try/README.md", "lab/fast/README.md", "lab/bench/README.md",
         "lab/bench/peers/README.md", "lab/page/README.md",
         "course/web/README.md",
-        "docs/examples/README.md", "docs/python.md"]),
+        "docs/examples/README.md", "docs/rest.md", "docs/python.md"]),
     ("To teach and to contribute", [
         "course/README.md", "course/elsewhere.md", "course/teaching.md",
         "course/rubric.md", "data/README.md", "docs/CONTRIBUTING.md",

@@ -15,18 +15,6 @@ namespace {
 
 constexpr double few = 100;  // products before a factor is considered
 
-Stiffness clamped(const Stiffness& B) {
-  return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
-}
-
-Matrix3 full_matrix(const Stiffness& B) {
-  const Four n = four(B.direction);
-  Matrix3 full;
-  for (int c = 0; c < 3; ++c)
-    full.column[c] = ((B.along - B.across) * n) * n[c];
-  add_identity(full, B.across);
-  return full;
-}
 /** The inverse of the positive definite @a a: by Cholesky, as a spring may be a
  * million times stiffer along than across; the triangle makes it symmetric. */
 Matrix3 inverse(const Matrix3& a) {
@@ -53,6 +41,18 @@ double rms(const Cloth& g, const Points& a) {
 }
 
 }  // namespace
+
+Stiffness clamped(const Stiffness& B) {
+  return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};
+}
+Matrix3 full_matrix(const Stiffness& B) {
+  const Four n = four(B.direction);
+  Matrix3 full;
+  for (int c = 0; c < 3; ++c)
+    full.column[c] = ((B.along - B.across) * n) * n[c];
+  add_identity(full, B.across);
+  return full;
+}
 
 void add_stiffness(std::string_view method, const ForcePlan& force,
                    const Cloth& g, const StiffnessVisitor& use) {

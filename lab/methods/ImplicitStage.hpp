@@ -18,6 +18,10 @@ namespace implicit_detail {
 void add_stiffness(std::string_view method, const ForcePlan& force,
                    const Cloth& g, const StiffnessVisitor& use);
 
+/** @a B without negative stiffness. */
+Stiffness clamped(const Stiffness& B);
+Matrix3 full_matrix(const Stiffness& B);
+
 /** Mark, by node id, the nodes that forces do not move: held and removed. */
 void find_fixed(const Cloth& g, const ConstraintPlan& constraint,
                 std::vector<char>& fixed);

@@ -140,7 +140,11 @@ void SparseCholesky::add_diagonal(unsigned i, const Matrix3& entry) {
   lab::add(entry_[begin_[place_[i]]], entry);
 }
 void SparseCholesky::add(std::size_t k, const Matrix3& entry) {
-  lab::add(entry_[at_[k]], entry);
+  if (const auto [i, j] = pairs_[k]; place_[i] > place_[j])
+    return lab::add(entry_[at_[k]], entry);
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      entry_[at_[k]].column[c][r] += entry.column[r][c];
 }
 
 bool SparseCholesky::factorize() {

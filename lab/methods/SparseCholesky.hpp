@@ -46,7 +46,7 @@ class SparseCholesky {
   void clear();
   /** A_ii += the symmetric @a entry. */
   void add_diagonal(unsigned i, const Matrix3& entry);
-  /** A_ij and A_ji += the symmetric @a entry, for pair @a k of analyze(). */
+  /** A_ij += @a entry and A_ji += its transpose, for pair @a k of analyze(). */
   void add(std::size_t k, const Matrix3& entry);
 
   /** Replace A by L. Call clear() before the next A.

@@ -89,6 +89,34 @@ class Help : public CLI::Formatter {
   }
 };
 
+/** Of --rest: let the scene begin at rest and end there.
+ * Throws SceneError: what is no matter of rest */
+void begin_and_end_at_rest(Options& o) {
+  Model& m = o.model;
+  const auto refuse = [](bool wrong, const char* what) {
+    if (wrong) throw SceneError("rest", std::string("cannot be ") + what);
+  };
+  const auto moves = [](const auto& part) { return part.motion.moves(); };
+  refuse(o.asks_advice() || !o.restart.empty() || !o.checkpoint.empty() ||
+             !o.video.empty() || o.window,
+         "combined with --advise, --assess, --auto, --restart, --checkpoint, "
+         "--record or --window: it makes no run");
+  refuse(!m.at.empty(), "combined with --at: it is a state at no time");
+  refuse(std::ranges::any_of(m.pins, moves) ||
+             std::ranges::any_of(m.planes, moves) ||
+             std::ranges::any_of(m.spheres, moves),
+         "that of moving pins or obstacles: give them no velocity");
+  refuse(!m.tears.empty() || m.tear_strain,
+         "that of a cloth that tears, whose rest depends on its motion: a mesh "
+         "alone is the scene of the assignment, so name its pins");
+  refuse(m.self_collision.has_value(),
+         "combined with --self-collision: it lets a cloth pass through itself");
+  refuse(m.measure.over_time(),
+         "asked for a measure over time: expected one of a state");
+  m.from_rest = true, m.t_end = 0, m.step = {};
+  o.headless = true, o.bounds_error = false;
+}
+
 /** Throws SceneError: an option that can't be used. */
 void check(Options& o) {
   auto require = [](bool ok, const char* option, double value,
@@ -150,6 +178,7 @@ void check(Options& o) {
   if (!o.json.empty() && !o.asks_advice())
     throw SceneError("json", "needs --advise, --assess or --auto");
   read_changes(o.model.at);
+  if (o.rest) begin_and_end_at_rest(o);
   if (o.window && (o.headless || o.pictures()))
     throw SceneError(
         "window",
@@ -239,8 +268,11 @@ void add_fields(CLI::App& app, Model& m) {
     for (const char* file : {"nodes,NODES", "tets,TETS"})
       if (std::string(file).starts_with(f.name + std::string(",")))
         name = std::string("--") + file;  // may come without its name
-    CLI::Option* option = app.add_option(
-        name, [](const CLI::results_t&) { return true; }, f.help);
+    CLI::Option* option =
+        std::holds_alternative<bool*>(f.member)
+            ? app.add_flag(name, f.help)
+            : app.add_option(
+                  name, [](const CLI::results_t&) { return true; }, f.help);
     option->type_name(f.type())->group(f.group);
     if (is_file) takes_file(option);
     if (f.repeats())  // what follows a value may be NODES
@@ -291,6 +323,11 @@ void add_run_options(CLI::App& app, Options& o) {
       ->type_name("FOLDER");
   app.add_option("--frame-rate", o.frame_rate,
                  "of --vtp and --ply: frames per simulated second [1/s]");
+  app.add_flag("--rest", o.rest,
+               "instead of a run find the equilibrium: print whether it is "
+               "stable, forces at pins, frequencies and stable steps; write "
+               "files of this state")
+      ->group("Method and step");
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   app.option_defaults()->group("Interrupted runs");
   add_file(app, "--checkpoint", o.checkpoint,

@@ -21,6 +21,7 @@ struct Options {
   int threads = 0;  ///< of a large cloth; 0: one a processor
   bool headless = false, window = false, paused = false, strain = false;
   bool quiet = false;
+  bool rest = false;  ///< the equilibrium, instead of a run
   bool advise = false, automatic = false, assess = false;
   double advise_work = 0;       ///< spring evaluations; 0: AdviceRules::budget
   bool bounds_error = false;    ///< of the positions, by model.tolerance

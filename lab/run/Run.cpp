@@ -33,7 +33,7 @@ Run::Run(Scene& scene, const Options& o)
             [this](const std::string& row) { write_csv(row), ++written_; }) {
   if (!o.csv.empty() || !o.checkpoint.empty() || !o.restart.empty())
     scene_.stepper().follow_drag();
-  if (!o.bounds_error) scene_.watch(o.model.t_end);
+  if (!o.bounds_error && !o.rest) scene_.watch(o.model.t_end);
   if (!o.out.empty()) out_.emplace(o.out);
   if (const auto quads = quads_beside(o.out); !quads.empty())
     quads_.emplace(quads);
@@ -229,7 +229,7 @@ int Run::finish() {
   });
   if (error) std::rethrow_exception(error);
   if (cut_short()) tell_interrupt();
-  if (!o_.quiet) {
+  if (!o_.quiet && !o_.rest) {
     print_summary();
     tell_work();
     if (scene_.control()) tell_steps(*scene_.control());

@@ -32,6 +32,7 @@
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/run/AtRest.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Progress.hpp"
@@ -206,7 +207,10 @@ int run(Options o) {
   if (!o.quiet)
     std::cout << scene.cloth().num_nodes() << " nodes, "
               << scene.cloth().num_edges() << " edges\n";
-  run.announce();
+  if (!o.rest)
+    run.announce();
+  else if (!o.quiet)
+    std::cout << in_words(*scene.rest(), scene);
   if (window) {
     window->show_strain(o.strain);
     window->set_paused(o.paused);

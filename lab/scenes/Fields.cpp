@@ -77,6 +77,8 @@ std::vector<Field> fields_of(Model& m) {
        "an edge breaks at this strain, l/L - 1", "a strain above 0", positive},
       {"self-collision", contact, scene, &m.self_collision,
        "nodes without a common edge stay apart: thickness D [m] friction F"},
+      {"from-rest", number, scene, &m.from_rest,
+       "begin in the equilibrium of the cloth, at rest", "true or false"},
       {"t-end", asked, scene, &m.t_end, "time at which the run ends [s]",
        "a time [s], 0 or more", not_negative},
       {"at", asked, scene, &m.at,
@@ -145,6 +147,10 @@ void read(const Field& f, const std::string& text, T& a) {
         (f.range != Word::Range::any && a < 0) ||
         (f.range == Word::Range::positive && a == 0))
       throw SceneError(f.name, printable(text), f.expected);
+  } else if constexpr (std::is_same_v<T, bool>) {
+    a = text == "true";
+    if (!a && text != "false")
+      throw SceneError(f.name, printable(text), f.expected);
   } else if constexpr (std::is_same_v<T, std::string>) {
     a = text;
     if (a.empty())
@@ -172,6 +178,8 @@ void write(const T& a, std::vector<std::string>& values) {
     if (a) write(*a, values);
   } else if constexpr (std::is_same_v<T, double>) {
     values.push_back(CME212::exact_text(a));
+  } else if constexpr (std::is_same_v<T, bool>) {
+    if (a) values.push_back("true");
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (!a.empty()) values.push_back(a);
   } else if constexpr (std::is_same_v<T, Measure>) {
@@ -253,6 +261,10 @@ Model checked(Model m) {
     throw SceneError("net", "cannot be combined with NODES and TETS");
   if (m.wind && m.material.drag.value_or(m.damping) == 0)
     throw SceneError("wind", "acts by drag: expected --drag or --damping, too");
+  if (m.from_rest && m.self_collision)
+    throw SceneError("from-rest",
+                     "cannot be combined with --self-collision: it lets a "
+                     "cloth pass through itself");
   return m;
 }
 

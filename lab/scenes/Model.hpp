@@ -223,6 +223,7 @@ struct Model {
   std::vector<Ball> tears;
   std::optional<double> tear_strain;  ///< [1], > 0
   std::optional<Distance> self_collision;
+  bool from_rest = false;  ///< begin at rest: lab/rest/Equilibrium.hpp
   // How it is computed, and how long
   TimeStep step;
   const MethodEntry* method = default_method();  ///< never null

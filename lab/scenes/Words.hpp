@@ -53,10 +53,10 @@ Words words_of(Box&);
 
 /** The member of a Model that a field sets. */
 using Member =
-    std::variant<double*, std::string*, std::vector<std::string>*, TimeStep*,
-                 const MethodEntry**, Measure*, Edges*, std::optional<double>*,
-                 std::optional<Distance>*, std::optional<Box>*,
-                 std::optional<Wind>*, std::vector<Sheet>*,
+    std::variant<bool*, double*, std::string*, std::vector<std::string>*,
+                 TimeStep*, const MethodEntry**, Measure*, Edges*,
+                 std::optional<double>*, std::optional<Distance>*,
+                 std::optional<Box>*, std::optional<Wind>*, std::vector<Sheet>*,
                  std::vector<Region>*, std::vector<Pin>*, std::vector<Wall>*,
                  std::vector<Solid>*, std::vector<Ball>*>;
 

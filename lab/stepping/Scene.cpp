@@ -35,6 +35,7 @@ Scene::Scene(const Scene& other, const TimeStep& step,
       mesh_(other.mesh_),
       held_(other.held_),
       built_(other.built_),
+      rest_(other.rest_),
       stepper_(hold(), step, method, other.time()),
       first_(method),
       changes_(other.changes_.begin() + std::ptrdiff_t(other.made_),
@@ -63,6 +64,8 @@ System& Scene::build() {
   built_.hand.reset();
   held_ = held_of(model_, mesh_.mesh, g);
   built_.watched.emplace(constraint_of(model_, mesh_.mesh, g));
+  if (model_.from_rest)
+    rest_ = Equilibrium(model_, g, built_.acting, *built_.watched).find();
   built_.overlaps = false;
   for (Node n : g.nodes())
     built_.overlaps |= model_.starts_inside(n.position());

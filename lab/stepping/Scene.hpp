@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/rest/Equilibrium.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/stepping/Changes.hpp"
 #include "lab/stepping/Stepper.hpp"
@@ -47,6 +48,8 @@ class Scene {
   /** Its model, with the changes of forces. */
   const Model& model() const { return model_; }
   const BuiltMesh& mesh() const { return mesh_; }
+  /** How it was put to rest, if its model begins there. */
+  const std::optional<Rest>& rest() const { return rest_; }
   /** The id of the node of this number in the mesh. */
   unsigned id_of(unsigned number) const {
     return number < mesh_.ids.size() ? mesh_.ids[number] : unsigned(-1);
@@ -192,6 +195,7 @@ class Scene {
   BuiltMesh mesh_;
   std::vector<HeldNodes> held_;
   System built_;
+  std::optional<Rest> rest_;  // of a model that begins there
   Stepper stepper_;
   MethodEntry first_;                           // before changes_
   std::vector<Change> changes_;                 // of Model::at

@@ -227,6 +227,7 @@ FIELDS: dict[str, Any] = {
     # The order in which its pairs are pushed decides where they end, so
     # that there is no truth to compare with.
     "self-collision": lambda d: None,
+    "from-rest": lambda d: None,  # the oracle has no equilibrium
     "dt": lambda d: d.one_of(  # in place of the step that is set
         [None] * 7 + ["auto", "auto", "auto:sharp"]),
     "measure": Draw.measure, "tolerance": Draw.tolerance,
