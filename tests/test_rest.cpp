@@ -86,7 +86,7 @@ TEST(Rest, SteelCable) {
   const Catenary c(20, 1.6, K, L, m);
   Measure at_left = Measure::pin_force;
   at_left.pin.x = 0;
-  const double force = answer(s->model(), *s, at_left)[0];
+  const double force = answer(*s, at_left)[0];
   EXPECT_NEAR(force, 7.553, 5e-4);
   EXPECT_NEAR(force, std::hypot(c.H, c.V + m * grav), 1e-6);
 }
@@ -236,7 +236,7 @@ TEST(Rest, ALooseClothOnAFloorMovesFreely) {
   const auto modes = here.modes(5);
   for (unsigned k = 0; k < 5; ++k)
     EXPECT_EQ(std::abs(modes[k].square) < here.zero(), k < 3) << k;
-  EXPECT_NEAR(answer(m, *s, Measure::contact_force)[0], grav, 1e-9);
+  EXPECT_NEAR(answer(*s, Measure::contact_force)[0], grav, 1e-9);
   EXPECT_TRUE(has(error_of([] { at_rest(sheet(3, {})); }), "falls without"));
 }
 
