@@ -76,24 +76,16 @@ void Equilibrium::project() {
     }
 }
 
-/** The force on each node [N], with what its surfaces can't hold. */
-void Equilibrium::find_forces() {
+/** Find the residual, and the surfaces that push. */
+void Equilibrium::find_contacts() {
   flow_.accelerate(g_, 0, force_, true);
   const auto node = arrays(g_).node_values();
-  for (unsigned i = 0; i < fixed_.size(); ++i)
-    left_[i] = fixed_[i]
-                   ? Point()
-                   : apply(free_[i], node[i].mass * flow_.acceleration(i));
-}
-
-/** Find the surfaces that push, by the forces; then find_forces(). */
-void Equilibrium::find_contacts() {
-  for (Matrix3& a : free_) a = Matrix3(), add_identity(a, 1);
-  find_forces();
   const auto x = arrays(g_).positions();
   for (unsigned i = 0; i < fixed_.size(); ++i) {
     auto& all = touched_[i];
     all.clear();
+    free_[i] = Matrix3(), add_identity(free_[i], 1);
+    left_[i] = fixed_[i] ? Point() : node[i].mass * flow_.acceleration(i);
     if (fixed_[i]) continue;
     each_surface(x[i], [&](std::size_t k, double depth, const Point& out,
                            double curvature) {
@@ -199,34 +191,25 @@ bool Equilibrium::factor(double shift, bool clamp) {
   return factor_.factorize();
 }
 
-/** Move by @a a times @a way, and by further steps of the same factor, until
- * @a energy falls.  @return false if it does not; then nothing has changed */
+/** Move by @a a times @a way if @a energy falls by a share of what its slope
+ * predicts (Armijo's rule); where round-off hides that, if the residual falls.
+ * @return false if not; then nothing has changed */
 bool Equilibrium::try_step(const std::vector<Point>& way, double a,
                            double& energy) {
   auto x = arrays(g_).positions();
   const std::vector<Point> before(x.begin(), x.end());
-  const auto left = left_;
-  const double slope = a * dot_product(left, way), residual = rest_.residual;
-  const double scale = std::abs(energy) + rest_.load * size_;
-  const bool close = slope <= 1e-11 * scale;  // round-off hides a fall
+  const double slope = a * dot_product(left_, way), residual = rest_.residual;
+  const double hidden = 1e-11 * (std::abs(energy) + rest_.load * size_);
+  const bool close = slope <= hidden;
   for (unsigned i = 0; i < way.size(); ++i) x[i] += a * way[i];
-  for (int more = 0;; ++more) {
-    project();
-    const double now = force_.energy(g_);
-    if (now <= energy - 1e-4 * slope ||
-        (close && now <= energy + 1e-11 * scale)) {
-      const auto touched = touched_;
-      find_contacts();
-      if (!close || rest_.residual < residual) return energy = now, true;
-      touched_ = touched;
-    }
-    if (more == 3 || !std::isfinite(now)) break;
-    find_forces();
-    factor_.solve(left_);
-    for (unsigned i = 0; i < way.size(); ++i) x[i] += left_[i];
+  project();
+  const double now = force_.energy(g_);
+  if (now <= energy + (close ? hidden : -1e-4 * slope)) {
+    find_contacts();
+    if (!close || rest_.residual < residual) return energy = now, true;
   }
   std::ranges::copy(before, x.begin());
-  left_ = left, rest_.residual = residual;
+  find_contacts();
   return false;
 }
 

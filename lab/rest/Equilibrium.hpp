@@ -34,10 +34,9 @@ struct Mode {
  *
  * Newton's method; each matrix is H + shift M without the directions into
  * obstacles. If that is not positive definite, negative stiffness counts as 0.
- * A step is kept if the energy falls (Armijo's rule). Springs that turn are
- * stretched to second order in the step; so up to three more steps by the same
- * factor come before a shorter one is tried. Source: J. Nocedal, S. Wright,
- * Numerical Optimization, 2006, 15.6 and 16.7. */
+ * A step is kept if the energy falls. From a saddle it goes on downhill, but
+ * not along an axis that symmetry leaves at rest. Source: J. Nocedal, S.
+ * Wright, Numerical Optimization, Springer 2006, 3.4 and 16.7. */
 class Equilibrium {
  public:
   /** Keeps references to @a m and @a g. Obstacles of @a m are those at t = 0.
@@ -93,7 +92,6 @@ class Equilibrium {
   template <typename Use>
   void each_surface(const Point& p, Use use) const;
   void project();
-  void find_forces();
   void find_contacts();
   void check_falls() const;
   void descend(double shift, int most);

@@ -93,8 +93,8 @@ class Help : public CLI::Formatter {
  * Throws SceneError: what is no matter of rest */
 void begin_and_end_at_rest(Options& o) {
   Model& m = o.model;
-  const auto refuse = [](bool wrong, const char* what) {
-    if (wrong) throw SceneError("rest", std::string("cannot be ") + what);
+  const auto refuse = [](bool wrong, const std::string& what) {
+    if (wrong) throw SceneError("rest", "cannot be " + what);
   };
   const auto moves = [](const auto& part) { return part.motion.moves(); };
   refuse(o.asks_advice() || !o.restart.empty() || !o.checkpoint.empty() ||
