@@ -44,7 +44,7 @@ kit-check:
 other_graphs := $(patsubst course/%/Graph.hpp,$(B)/%,$(wildcard course/*/*/Graph.hpp))
 define run_stages
   @rm -rf $@ && mkdir -p $@
-  @cp $1 mass_spring.hpp course/graphs/stages.cpp $@
+  @cp $1 mass_spring.hpp course/starter/stages.cpp $@
   @sed -zE 's/torn = (make[^;]*;)/torn = [\&] { return \1 };/; s/force, torn\)/force, torn())/' \
     mass_spring.cpp >$@/mass_spring.cpp
   @$(CXX) -std=c++20 -O0 -Wall -Wextra $(CXXFLAGS) -D_GLIBCXX_ASSERTIONS -I$@ -I. \

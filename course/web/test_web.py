@@ -132,7 +132,7 @@ def a_starter_and_a_solution_become_pages(b):
     b.wait("page.cloths[0].readings.nodes < 600")  # torn
     b.screenshot(build / "page.png")
     # A graph of another student, whose removals move all later indices.
-    other = tree("solution", "other", "course/graphs/pointers/Graph.hpp")
+    other = tree("solution", "other", "course/starter/open/Graph.hpp")
     open_page(b, other)
     choose_stage(b, "tear", 0.7)
     assert b.value("page.cloths[0].readings.nodes") == 583

@@ -1,6 +1,6 @@
 /** @file stages.cpp
  * All five stages of mass_spring.cpp in one program, which `make graphs` builds
- * and runs with each graph of this folder. */
+ * and runs with Graph.hpp of the root and of each folder here. */
 #include <cmath>
 #include <exception>
 #include <future>
