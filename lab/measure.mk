@@ -77,7 +77,7 @@ stability: stability_map
 	@find $(SWEEP) -name '*.csv' ! -newer $(B)/stability_map -delete
 	@$(B)/stability_map $(SWEEP) --effort $(EFFORT)
 	@cp $(SWEEP)/stability_*.csv $(maps_in)
-	@$(draw) stability_limits stability_growth --folder $(maps_in)
+	@$(draw) stability_limits --folder $(maps_in)
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
 # SCENES random scenes, the methods in turn; and 1,000 by --dt auto.

@@ -127,30 +127,21 @@ TEST(Growth, IsThatOfTheFastestWaveBeyondTheLimitAndNoneBelow) {
     auto method = m.make();
     const double dt = m.info.limit / omega;
     const double right = std::log(amplification(*method, 1.1 * dt, omega));
-    EXPECT_NEAR(growth(p, m, 1.1 * dt, 200).per_step, right, 0.02 * right)
-        << name;
-    EXPECT_NEAR(growth(p, m, 1.1 * dt, 200, 3).per_step, right, 0.02 * right)
-        << name;
-    EXPECT_LT(growth(p, m, 0.98 * dt, 200).per_step, 0.005) << name;
+    // In the later half the other waves are small beside it.
+    const auto late = [&](double step, int every) {
+      return (growth(p, m, step, 200, every) - growth(p, m, step, 99, every)) /
+             101;
+    };
+    EXPECT_NEAR(late(1.1 * dt, 1), right, 0.02 * right) << name;
+    EXPECT_NEAR(late(1.1 * dt, 3), right, 0.02 * right) << name;
+    EXPECT_LT(late(0.98 * dt, 1), 0.005) << name;
   }
-}
-
-// Compressed, no step is small enough: its energy itself falls when it moves.
-TEST(Growth, OfACompressedSheetIsThatOfBuckling) {
-  const Problem p = stretched_sheet(9, MeshSprings::plain, 0.9, 0);
-  const MethodEntry& verlet = table::verlet;
-  const double edge = std::sin(std::numbers::pi * 7 / 16.);
-  // Out of the plane K (1/s - 1) pushes from all four sides.
-  const double rate = 2 * edge * std::sqrt(2 * 100. * 81 * (1 / 0.9 - 1));
-  for (double dt : {1e-4, 5e-4})
-    EXPECT_NEAR(growth(p, verlet, dt, 2000).per_step, rate * dt,
-                0.03 * rate * dt);
 }
 
 TEST(Growth, IsInfiniteWhereNothingIsFinite) {
   const Problem p = stretched_sheet(5, MeshSprings::diagonals, 1.5, 1);
-  EXPECT_EQ(growth(p, table::rk4, 1e200, 4).total, no_limit);
-  EXPECT_EQ(growth(p, table::verlet, 1, 100, 5, 2).total, no_limit);
+  EXPECT_EQ(growth(p, table::rk4, 1e200, 4), no_limit);
+  EXPECT_EQ(growth(p, table::verlet, 1, 100, 5, 2), no_limit);
 }
 
 TEST(Growth, GivesTheLimitOfASheetToItsPrecision) {

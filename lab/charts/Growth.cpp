@@ -25,7 +25,7 @@ Problem stretched_sheet(unsigned side, MeshSprings::Kind mesh, double stretch,
   return {m, "stretched sheet"};
 }
 
-Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
+double growth(const Problem& p, const MethodEntry& method, double dt, int steps,
               int every, double enough) {
   Start s(p);
   const std::vector<Point> rest(arrays(s.cloth).positions().begin(),
@@ -69,15 +69,13 @@ Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
 
   auto made = method.make();
   const double start = size();
-  double total = 0, early = 0, now = start;  // total: of renewals so far
-  int early_steps = 0;
+  double total = 0, now = start;  // total: of renewals so far
   for (int n = 1; n <= steps; ++n) {
     made->step(s.cloth, (n - 1) * dt, dt, s.force, s.constraint);
     if (n % every != 0 && n != steps) continue;
     now = size();
     const double so_far = total + std::log(now / start);
-    if (!(so_far < enough)) return {no_limit, no_limit};
-    if (n <= steps / 2) early = so_far, early_steps = n;
+    if (!(so_far < enough)) return no_limit;
     if (now > 1e3 * start || now < 1e-3 * start) {
       total = so_far;
       multiply(start / now);
@@ -85,8 +83,7 @@ Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
       now = start;
     }
   }
-  total += std::log(now / start);
-  return {total, (total - early) / (steps - early_steps)};
+  return total + std::log(now / start);
 }
 
 double measured_sheet_limit(const Problem& p, const MethodEntry& method,
@@ -95,8 +92,7 @@ double measured_sheet_limit(const Problem& p, const MethodEntry& method,
   const double most = std::log(10.0);
   while (high - low > precision * low) {
     const double middle = (low + high) / 2;
-    (growth(p, method, middle, steps, 5, most).total < most ? low : high) =
-        middle;
+    (growth(p, method, middle, steps, 5, most) < most ? low : high) = middle;
   }
   return low;
 }

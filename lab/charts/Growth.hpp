@@ -13,12 +13,6 @@ namespace lab {
 Problem stretched_sheet(unsigned side, MeshSprings::Kind mesh, double stretch,
                         double gamma);
 
-/** The growth of a perturbation. */
-struct Growth {
-  double total = 0;     ///< ln of its size at the end over that at the start
-  double per_step = 0;  ///< ln of its growth per step in the later half
-};
-
 /** Give @a p, which is at rest, random velocities and measure their growth.
  * The size of a perturbation is the square root of its energy: kinetic, and
  * elastic with the stiffness at rest. The exact motion conserves it; drag
@@ -27,9 +21,10 @@ struct Growth {
  * @param every steps between two measurements of the size, in which it should
  *        not grow by more than 1e4
  * @param enough stop when ln of the size has grown by so much
- * A state that is not finite counts as infinite growth.  Complexity: the steps,
+ * @return ln of the size at the end over that at the start; infinite: it was
+ * enough, or the state is not finite.  Complexity: the steps,
  * and one pass over the springs for each measurement. */
-Growth growth(const Problem& p, const MethodEntry& method, double dt, int steps,
+double growth(const Problem& p, const MethodEntry& method, double dt, int steps,
               int every = 1, double enough = no_limit);
 
 /** The largest step [s] with which a perturbation of @a p grows at most tenfold

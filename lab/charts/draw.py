@@ -29,7 +29,6 @@ CHARTS: dict[str, tuple[str, str, Callable[..., None]]] = {
     "grid_refinement": ("charts", "grid_refinement.csv",
                         surveys.grid_refinement),
     "stability_limits": ("charts", "stability_limits.csv", surveys.limits),
-    "stability_growth": ("charts", "stability_growth.csv", surveys.growth),
     "adviser": ("advice", "adviser.csv", surveys.adviser),
     "peers": ("bench", "peers.csv", peers.peers),
 }

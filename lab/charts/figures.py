@@ -102,18 +102,11 @@ def last_energy(method: str) -> tuple[float, float]:
     return float(row["energy"]), float(row["t"])
 
 
-def stability(name: str, column: str, pick: Callable[..., float],
-              scale: str = "1", **where: str) -> float:
-    """The largest or least value of a column over one of another."""
-    return pick(float(row[column]) / float(row.get(scale, 1))
-                for row in table(f"charts/results/stability_{name}.csv").where(
-                    **where) if row[column])
-
-
-def stretched() -> int:
-    """How many cells of the growth map are of a stretched sheet."""
-    return sum(float(row["stretch"]) > 1 for row in
-               table("charts/results/stability_growth.csv").rows)
+def limits(pick: Callable[..., float], scale: str) -> float:
+    """The largest or least measured limit over another one."""
+    return pick(float(row["measured"]) / float(row[scale]) for row in
+                table("charts/results/stability_limits.csv").rows
+                if row["measured"])
 
 
 def call(method: str) -> float:

@@ -1,10 +1,10 @@
 /** @file stability_map.cpp
- * Maps of the stability of methods: measured and predicted limits. A map
- * consists of independent runs, its cells, each with a file of its own. A cell
- * whose file is there is not run again: so a map that was interrupted goes on
- * where it stopped, to the same bytes.
+ * Measured and predicted limits of methods. The map consists of independent
+ * runs, its cells, each with a file of its own. A cell whose file is there is
+ * not run again: so a map that was interrupted goes on where it stopped, to the
+ * same bytes.
  *
- *   build/stability_map FOLDER --effort quick   # FOLDER/stability_MAP.csv
+ *   build/stability_map FOLDER --effort quick   # FOLDER/stability_limits.csv
  *
  * `make stability` runs it and draws. The columns: lab/charts/README.md. Exit
  * status: 0 done; 2 an option that can't be used, or an output that can't be
@@ -35,7 +35,6 @@
 
 using namespace lab;
 
-using CME212::short_text;
 using report::cell;
 
 namespace {
@@ -43,33 +42,16 @@ namespace {
 /** The amount of work: for the charts, for a first look. */
 enum Effort { full, quick };
 
-/** A part of a map, with runs of its own. Its name begins with the map's. */
+/** A part of the map, with a run of its own. */
 struct Cell {
   std::string name;
   double cost;  // estimated seconds on a core of 2.4 GHz
-  std::function<void(std::ostream&)> run;  // writes its rows
+  std::function<void(std::ostream&)> run;  // writes its row
 };
-
-struct Map {
-  const char* name;
-  const char* about;
-  const char* columns;
-};
-constexpr std::array maps = {
-    Map{"limits",
-        "the largest stable step on a sheet stretched to 1.5 times its size "
-        "and held at its rim; drag 1 1/s",
-        "side,mesh,method,predicted [s],measured [s],safe [s]"},
-    Map{"growth",
-        "ln of the growth per step of a tiny disturbance of a stretched sheet, "
-        "plain mesh, no drag",
-        "method,stretch,dt/safe,predicted limit/safe,growth"}};
 
 constexpr const char* name_of(MeshSprings::Kind mesh) {
   return mesh == MeshSprings::plain ? "plain" : "diagonals";
 }
-const std::vector<const char*> explicit_methods = {"symplectic-euler", "verlet",
-                                                   "pefrl", "rk4"};
 
 /** omega_safe() and a good SharpOmega of @a p at its start [1/s]. */
 std::pair<double, double> frequencies(const Problem& p) {
@@ -77,8 +59,6 @@ std::pair<double, double> frequencies(const Problem& p) {
   return {omega_safe(s.cloth, s.force, s.constraint),
           SharpOmega()(s.cloth, s.force, s.constraint, 80)};
 }
-
-// ----------------------------------------------------------------------- Maps
 
 /** Limit against the number of nodes. A large cloth can't be run for seconds,
  * but a stretched sheet shows its limit within a few hundred steps. */
@@ -106,39 +86,6 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
                              (mesh == MeshSprings::plain ? 0.6 : 1),
                          run});
       }
-}
-
-/** Growth against stretch and step: a cell is a column of the map, one method
- * at one stretch. */
-void add_growth(std::vector<Cell>& cells, Effort effort) {
-  constexpr unsigned side = 15;
-  const int columns = std::array{40, 16}[effort];
-  const int rows = std::array{60, 24}[effort];
-  const int steps = std::array{600, 200}[effort];
-  constexpr double low = 0.9, high = 2.5;  // stretch
-  constexpr double least = 0.5, most = 2;  // dt/safe
-  for (const char* name : explicit_methods)
-    for (int k = 0; k < columns; ++k) {
-      const double stretch = low + (high - low) * (k + 0.5) / columns;
-      const MethodEntry& m = *find_method(name);
-      auto run = [=, &m](std::ostream& out) {
-        const Problem p = stretched_sheet(side, MeshSprings::plain, stretch, 0);
-        auto [safe, sharp] = frequencies(p);
-        for (int row = 0; row < rows; ++row) {
-          const double of_safe = least + (most - least) * (row + 0.5) / rows;
-          const double dt = of_safe * step_limit(m, safe);
-          out << name << ',' << cell(stretch) << ',' << cell(of_safe) << ','
-              << cell(safe / sharp) << ',';
-          char text[32];
-          std::snprintf(text, sizeof text, "%.3g\n",
-                        std::min(99.0, growth(p, m, dt, steps).per_step));
-          out << text;
-        }
-      };
-      cells.push_back(
-          {std::string("growth-") + name + '-' + short_text(stretch),
-           4e-6 * (m.info.sweeps + 1) * rows * steps, run});
-    }
 }
 
 // ----------------------------------------------------------------- Running
@@ -174,20 +121,16 @@ void run(std::vector<Cell> cells, const std::filesystem::path& folder) {
   error.rethrow();
 }
 
-/** Write the files of the maps from those of @a cells. */
+/** Write the file of the map from those of @a cells. */
 void join(const std::vector<Cell>& cells, const std::filesystem::path& folder) {
-  for (const Map& map : maps) {
-    const std::string name = map.name;
-    CME212::OutputFile file(folder / ("stability_" + name + ".csv"));
-    report::write_head(file.stream(),
-                       "stability; columns: lab/charts/README.md");
-    file.stream() << "# map " << name << ": " << map.about << '\n'
-                  << map.columns << '\n';
-    for (const Cell& cell : cells)
-      if (cell.name.starts_with(name + '-'))
-        file.stream() << std::ifstream(folder / (cell.name + ".csv")).rdbuf();
-    file.commit();
-  }
+  CME212::OutputFile file(folder / "stability_limits.csv");
+  report::write_head(file.stream(), "stability; columns: lab/charts/README.md");
+  file.stream() << "# map limits: the largest stable step on a sheet stretched "
+                   "to 1.5 times its size and held at its rim; drag 1 1/s\n"
+                   "side,mesh,method,predicted [s],measured [s],safe [s]\n";
+  for (const Cell& cell : cells)
+    file.stream() << std::ifstream(folder / (cell.name + ".csv")).rdbuf();
+  file.commit();
 }
 
 }  // namespace
@@ -198,7 +141,7 @@ int main(int argc, char** argv) {
                "stability_map");
   std::string folder;
   Effort effort = full;
-  app.add_option("FOLDER", folder, "for the maps, and a file for each cell")
+  app.add_option("FOLDER", folder, "for the map, and a file for each cell")
       ->required();
   app.add_option("--effort", effort, "fewer and smaller cells than in full")
       ->transform(CLI::CheckedTransformer(
@@ -208,7 +151,6 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(folder);
     std::vector<Cell> cells;
     add_limits(cells, effort);
-    add_growth(cells, effort);
     run(cells, folder);
     join(cells, folder);
     return 0;

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import pathlib
 
-from panels import DARK, GRAY, Axis, Curve, Panel, Picture, styles
+from panels import GRAY, Axis, Curve, Panel, Picture, styles
 from results import Table
 
 BLUE, ORANGE, BLACK = "#0072B2", "#D55E00", "#000000"
@@ -49,62 +49,6 @@ def limits(csv: pathlib.Path, out: pathlib.Path) -> None:
                     color=look[method][0])
         picture.text(panel.left + 12, panel.bottom + 16,
                      f"safe for verlet: {safe:.4f}/sqrt(nodes) s")
-    picture.finish()
-
-
-def growth(csv: pathlib.Path, out: pathlib.Path) -> None:
-    """Growth of a tiny disturbance against stretch and step, a panel for a
-    method."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import LinearSegmentedColormap, LogNorm
-    import matplotlib
-    table = Table(csv)
-    names = list(dict.fromkeys(row["method"] for row in table.rows))
-    picture = Picture(
-        out, 800, 330,
-        "The predicted limit is where disturbances begin to grow",
-        "A tiny disturbance of a stretched sheet. Line: the predicted limit; "
-        "dashed: the safe one. Left of 1 the sheet buckles.", table.footer())
-    width = (800 - 68 - 100) // len(names)
-    least = 0.005  # of ln of the growth of a step; less is white
-    shades = matplotlib.colormaps["viridis_r"]
-    colors = LinearSegmentedColormap.from_list(
-        "growth", [shades(k / 20) for k in range(21)])
-    colors.set_under("white")
-    norm = LogNorm(least, math.log(10))
-    for k, name in enumerate(names):
-        rows = table.where(method=name)
-        stretch = list(dict.fromkeys(float(r["stretch"]) for r in rows))
-        steps = list(dict.fromkeys(float(r["dt/safe"]) for r in rows))
-        cell = [(a[1] - a[0]) / 2 for a in (stretch, steps)]
-        x = Axis(stretch[0] - cell[0], stretch[-1] + cell[0], False)
-        y = Axis(steps[0] - cell[1], steps[-1] + cell[1], False)
-        left = 68 + width * k
-        panel = Panel(left, 62, left + width - 14, 255, x, y, name)
-        ax = picture.axes(
-            panel, xticks=(1, 1.5, 2), yticks=(0.5, 1, 1.5, 2), ynames=k == 0,
-            xlabel="length/rest length", ylabel="" if k else "dt/(safe dt)")
-        ax.grid(False)
-        grown = iter(max(1e-9, float(r["growth"])) for r in rows)
-        cells = [[next(grown) for _ in steps] for _ in stretch]
-        ax.imshow(list(zip(*cells)), origin="lower", aspect="auto",
-                  interpolation="nearest", cmap=colors, norm=norm,
-                  extent=(x.lo, x.hi, y.lo, y.hi))
-        line = list({float(r["stretch"]): float(r["predicted limit/safe"])
-                     for r in rows}.items())
-        for color, thick in (("white", 4), ("black", 1.8)):
-            ax.plot(*zip(*line), color=color, lw=thick)
-        ax.axhline(1, color="#555555", lw=1, ls="--")
-        for words, at, color in (("grows", (1.75, 1.75), "white"),
-                                 ("bounded", (1.75, 0.75), DARK)):
-            picture.text(*panel.pixel(at), words, color=color, at="center")
-    bar = picture.figure.colorbar(
-        ScalarMappable(norm, colors), extend="min", cax=picture.figure.add_axes(
-            (0.92, 62 / 330, 0.018, 173 / 330)), ticks=[math.log(v) for v in (
-                1.01, 1.1, 1.5, 3, 10)])
-    bar.minorticks_off()
-    bar.ax.set_yticklabels(["1.01", "1.1", "1.5", "3", "10"])
-    picture.text(785, 248, "growth/step", at="right")
     picture.finish()
 
 
