@@ -236,6 +236,11 @@ bool Scene::unpin(unsigned node) {
                     [node](const auto& held) { return held.id == node; });
     std::erase_if(held_, [](const HeldNodes& h) { return h.nodes.empty(); });
     hold();
+    // A pin may have held the node in an obstacle, which pushes it out now.
+    if (!model_.planes.empty() || !model_.spheres.empty()) try {
+        (*built_.watched)(cloth(), time());
+      } catch (const StepError&) {  // the next step says why
+      }
     stepper_.forget_limits();
   });
   return true;

@@ -117,7 +117,8 @@ std::string Verdict::difference() const {
     separator = ", and ";
   };
   if (is_off())
-    add("another energy, by " + CME212::two_digits(std::abs(off)) + " J" +
+    add("another " + std::string(loose ? "internal " : "") + "energy, by " +
+        CME212::two_digits(std::abs(off)) + " J" +
         (scale > 0 ? ", " + percent(std::abs(off) / scale) + " of the largest"
                    : ""));
   if (apart == no_limit)
@@ -263,9 +264,10 @@ std::vector<double> Witness::repeat(Scene& finer, Verdict& v, double& slack,
       return d;
     }
     const Look other(finer);
-    d.push_back(factor * (run.loose + other.loose > 0
-                              ? run.internal - other.internal
-                              : run.total - other.total));
+    const bool internal = run.loose + other.loose > 0;
+    v.loose |= internal;
+    d.push_back(factor * (internal ? run.internal - other.internal
+                                   : run.total - other.total));
     v.scale = std::max(v.scale, other.internal);
     v.mine = std::max(v.mine, run.internal);
     slack = std::max(slack, finer.energy().round_off());

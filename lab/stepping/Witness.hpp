@@ -27,6 +27,7 @@ struct Verdict {
   double scale = 0;     ///< the largest internal energy of the finer run [J]
   double mine = 0;      ///< that of the run [J]
   double slack = 0;     ///< a difference that says nothing [J]
+  bool loose = false;   ///< energies are internal: the cloth moves freely
   bool sudden = false;  ///< parts were removed, which comes at once: errors
                         ///< of order 1
   double apart = 0;     ///< largest distance of a node from its place in the
