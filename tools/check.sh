@@ -329,6 +329,20 @@ turn() {  # NAME LIMIT COMMAND...
   mkdir "$logs/taken/$1" 2>/dev/null || return 0
   limit=$2 step "$1" "${@:3}"
 }
+# One of the lists is taken by the commit, or all: make check-full ALL=1.
+in_turn() {  # LIST...
+  local list place=0
+  for list; do
+    [ -z "${ALL:-}" ] && [ $((turn_of / 2 % $#)) != $((place++)) ] || "$list"
+  done
+}
+of_site() { turn site "$long" site; }
+of_web() { turn web "$long" web; }
+of_advice() { turn advice "$limit" advice; }
+of_figures() {
+  turn charts    "$limit" in_folder . -s charts QUICK=1
+  turn stability "$limit" in_folder . -s stability QUICK=1
+}
 # All that needs nothing of each other; the longest first.
 turns() {
   turn kit       "$long"  make --no-print-directory kit-check EVERY=64 \
@@ -336,11 +350,10 @@ turns() {
   turn threads   "$long"  threads
   turn clang     "$long"  clang
   turn page      "$long"  page
-  turn site      "$long"  site
-  turn web       "$long"  web
+  in_turn of_site of_web
   turn python    "$limit" python_module
   turn pages     "$long"  env EVERY=2 FIRST=$((turn_of % 2)) tools/check_pages.sh
-  turn advice    "$limit" advice
+  in_turn of_figures of_advice
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh
   turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \
@@ -349,10 +362,8 @@ turns() {
   turn checks    "$long"  tools/test_checks.sh
   turn window    "$limit" tools/test_window.sh
   turn mistakes  "$limit" python3 course/pictures/test_mistakes.py
-  turn charts    "$limit" in_folder . -s charts QUICK=1
   turn headers   "$limit" env CXX=clang++ EVERY=8 FIRST=$((turn_of % 8)) \
     tools/check_headers.sh
-  turn stability "$limit" in_folder . -s stability QUICK=1
   turn lanes     "$limit" tools/check_lanes.sh
   turn peers     "$limit" peers
   turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000

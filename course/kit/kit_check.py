@@ -67,10 +67,15 @@ class Cases:
 
     def all(self) -> Iterator[Case]:
         yield Case("solution", self.solution, self.loses())
-        yield Case("starter", self.base("starter"), self.starter)
-        for name in BASES[1:]:
-            yield Case(name, self.base(name), self.loses())
+        for name in self.in_turn(["starter", *BASES[1:]]):
+            yield Case(name, self.base(name), self.starter
+                       if name == "starter" else self.loses())
         yield from itertools.islice(self.many(), *self.sample)
+
+    def in_turn(self, all_: list) -> list:
+        """All of them; of a sample one."""
+        first, _, every = self.sample
+        return all_ if every == 1 else [all_[first % len(all_)]]
 
     def many(self) -> Iterator[Case]:
         for task in self.regions:
@@ -175,12 +180,11 @@ class Check:
 
     def older(self) -> None:
         """Submissions to starters that were handed out lose nothing."""
-        first, _, every = self.cases.sample
-        levels = years.LEVELS if every == 1 else [years.LEVELS[first % 2]]
-        for year in years.years().values():
+        for year in self.cases.in_turn([*years.years().values()]):
             course = year.course(self.cases.course)
             # Their numbers are those of then.
-            for level in levels if year.numbers == course.constants else ():
+            for level in (self.cases.in_turn([*years.LEVELS])
+                          if year.numbers == course.constants else ()):
                 started = time.monotonic()
                 taken = submission.Submission({
                     path.name: path.read_bytes() for path in
@@ -218,11 +222,10 @@ def programs(check: Check) -> None:
     folder = once.KIT
     own = {name: value for name, value in os.environ.items()
            if name not in ("EVERY", "FIRST")}
-    first, _, every = check.cases.sample
-    parts = ["Grading", "Whole", "Runner OwnTests Dates Ranks"]
-    part = parts[first % len(parts)].split() if every > 1 else []
+    part = check.cases.in_turn(["Grading", "Whole",
+                                "Runner OwnTests Dates Ranks"])
     for name, *only in (["pages.py"], ["test_report.py"], ["test_grader.py"],
-                        ["test_programs.py", *part]):
+                        ["test_programs.py", *" ".join(part).split()]):
         started = time.monotonic()
         done = child.run([sys.executable, folder / name, *only], 1500,
                          text=True, capture_output=True, env=own)
