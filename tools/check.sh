@@ -189,10 +189,10 @@ of_charts() {
   step chart_rule  python3 lab/charts/test_charts.py
   step drawn       drawn
   step graphs      in_folder . graphs
+  step crossings   crossings 20
 }
 of_readme() {
   step readme      tools/check_readme.sh
-  step crossings   crossings 30
 }
 build_tests() { in_folder . units work_precision; }
 
@@ -339,6 +339,8 @@ in_turn() {  # LIST...
 of_site() { turn site "$long" site; }
 of_web() { turn web "$long" web; }
 of_advice() { turn advice "$limit" advice; }
+of_clang() { turn clang "$long" clang; }
+of_threads() { turn threads "$long" threads; }
 of_figures() {
   turn charts    "$limit" in_folder . -s charts QUICK=1
   turn stability "$limit" in_folder . -s stability QUICK=1
@@ -347,13 +349,12 @@ of_figures() {
 turns() {
   turn kit       "$long"  make --no-print-directory kit-check EVERY=64 \
     FIRST=$((turn_of % 64))
-  turn threads   "$long"  threads
-  turn clang     "$long"  clang
   turn page      "$long"  page
   in_turn of_site of_web
+  in_turn of_clang of_threads
   turn python    "$limit" python_module
   turn pages     "$long"  env EVERY=2 FIRST=$((turn_of % 2)) tools/check_pages.sh
-  in_turn of_figures of_advice
+  in_turn of_advice of_figures
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh
   turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \
