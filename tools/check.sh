@@ -234,14 +234,10 @@ peers() {
   done
 }
 # Programs and tests have no warning of clang++, which compiles what threads()
-# runs, and only reads the rest; or, in turn, without window and OpenMP.
-clang() {
-  local read=(objects UNITS=2 CXX=clang++ SANITIZE=
-    CXXFLAGS="$(strict clang++) -fsyntax-only")
-  case $((turn_of % 2)) in
-    0) in_folder read "${read[@]}" ;;
-    1) in_folder bare "${read[@]}" VIEWER=0 OPENMP=0 ;;
-  esac
+# runs, and only reads the rest; nor, in another folder, by other VARIABLES.
+clang() {  # FOLDER VARIABLE=VALUE...
+  in_folder "$1" objects UNITS=2 CXX=clang++ SANITIZE= \
+    CXXFLAGS="$(strict clang++) -fsyntax-only" "${@:2}"
 }
 # Tests under the ThreadSanitizer of clang++, whose OpenMP tells what waits for
 # what. Mesa's own threads are not ours to check.
@@ -333,13 +329,14 @@ turn() {  # NAME LIMIT COMMAND...
 in_turn() {  # LIST...
   local list place=0
   for list; do
-    [ -z "${ALL:-}" ] && [ $((turn_of / 2 % $#)) != $((place++)) ] || "$list"
+    [ -z "${ALL:-}" ] && [ $((turn_of % $#)) != $((place++)) ] || "$list"
   done
 }
 of_site() { turn site "$long" site; }
 of_web() { turn web "$long" web; }
 of_advice() { turn advice "$limit" advice; }
-of_clang() { turn clang "$long" clang; }
+of_clang() { turn clang "$long" clang read; }
+of_bare() { turn bare "$long" clang bare VIEWER=0 OPENMP=0; }
 of_threads() { turn threads "$long" threads; }
 of_figures() {
   turn charts    "$limit" in_folder . -s charts QUICK=1
@@ -351,7 +348,7 @@ turns() {
     FIRST=$((turn_of % 64))
   turn page      "$long"  page
   in_turn of_site of_web
-  in_turn of_clang of_threads
+  in_turn of_clang of_bare of_threads
   turn python    "$limit" python_module
   turn pages     "$long"  env EVERY=2 FIRST=$((turn_of % 2)) tools/check_pages.sh
   in_turn of_advice of_figures

@@ -76,10 +76,10 @@ def read(path: str) -> dict[str, Files]:
                 skip(member.filename, error)
                 files = {}
             what = ".zip" if file.endswith(".zip") else file
-            if attempt >= taken.get(what, (0, {}))[0]:
-                taken[what] = attempt, {
-                    **(taken[what][1] if taken.get(what, (-1, {}))[0] == attempt
-                       else {}), **files}
+            latest, beside = taken.get(what, (attempt, {}))
+            if attempt >= latest:
+                taken[what] = attempt, (beside | files if attempt == latest
+                                        else files)
     return {student: {name: content for _, files in uploads.values()
                       for name, content in files.items()}
             for student, uploads in last.items()}

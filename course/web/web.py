@@ -32,12 +32,12 @@ ROOM = pathlib.Path(__file__).resolve().parent
 KIT = ROOM.parents[1] / "course/kit"    # a starter has none, and no jail
 HEADERS = (KIT.parents[1] if KIT.is_dir() else ROOM.parent) / "CME212"
 sys.path.append(str(KIT))
-BadInput: tuple[type[Exception], ...] = (OSError,)
+BadInput: type[Exception] = OSError
 if KIT.is_dir():
     import build
     import once
     import submission
-    BadInput = submission.BadInput, once.KitError
+    BadInput = submission.BadInput
 SOURCES = ("cloth.cpp", "thrown.cpp")
 # Newer versions of clang want another name of the target, older ones this one.
 FLAGS = """--target=wasm32-wasi -Wno-deprecated -std=c++20 -O2 -g0 -Wall -Wextra
@@ -90,9 +90,12 @@ def compiled(files: dict[str, bytes], *more: str) -> bytes | None:
         if KIT.is_dir():
             home = pathlib.Path(
                 os.path.realpath(shutil.which(words[0]) or "/usr/bin/")).parent
-            unit = build.Sources(  # type: ignore[attr-defined]
-                once.Kit.only_jail(), folder / "room", files,
-                [ROOM, HEADERS, include, home], ()).compiled(words)
+            try:
+                unit = build.Sources(  # type: ignore[attr-defined]
+                    once.Kit.only_jail(), folder / "room", files,
+                    [ROOM, HEADERS, include, home], ()).compiled(words)
+            except once.KitError as error:
+                raise BadInput(str(error)) from None
             said, right, refused = unit.output, unit.right, unit.refused
         else:
             made.mkdir(parents=True)
@@ -104,7 +107,7 @@ def compiled(files: dict[str, bytes], *more: str) -> bytes | None:
             said, right, refused = (
                 done.stderr.replace(f"{source}/", ""), out.exists(), "")
         if refused:
-            raise BadInput[0](refused)
+            raise BadInput(refused)
         print(said, end="", file=sys.stderr)
         return out.read_bytes() if right else None
 

@@ -28,11 +28,6 @@ double trace(const Matrix3& a) {
   return a.column[0][0] + a.column[1][1] + a.column[2][2];
 }
 
-double dot_product(const std::vector<Point>& a, const std::vector<Point>& b) {
-  double sum = 0;
-  for (unsigned i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
-  return sum;
-}
 template <typename Points>
 double rms(const Cloth& g, const Points& a) {
   double sum = 0;
@@ -41,6 +36,12 @@ double rms(const Cloth& g, const Points& a) {
 }
 
 }  // namespace
+
+double dot_product(const std::vector<Point>& a, const std::vector<Point>& b) {
+  double sum = 0;
+  for (unsigned i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
+  return sum;
+}
 
 Stiffness clamped(const Stiffness& B) {
   return {B.direction, std::max(0.0, B.along), std::max(0.0, B.across)};

@@ -18,6 +18,8 @@ namespace implicit_detail {
 void add_stiffness(std::string_view method, const ForcePlan& force,
                    const Cloth& g, const StiffnessVisitor& use);
 
+double dot_product(const std::vector<Point>& a, const std::vector<Point>& b);
+
 /** @a B without negative stiffness. */
 Stiffness clamped(const Stiffness& B);
 Matrix3 full_matrix(const Stiffness& B);

@@ -14,7 +14,7 @@ page_o  := $(B)/page.o
 page_source := $(filter-out lab/page/page_positions.cpp $(patsubst \
   %,lab/scenes/%.cpp, Interrupt Memory MeshFile NetBinary NetFile Warnings) \
   lab/stepping/Checkpoint.cpp lab/fast/FastestCpu.cpp, \
-  $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes rest stepping live page))) \
+  $(wildcard $(patsubst %,lab/%/*.cpp,fast methods stability scenes stepping live page))) \
   course/web/thrown.cpp
 page_objects := $(page_source:%.cpp=$(page_o)/%.o) $(page_o)/stored_scenes.o
 page_target = --target=wasm32-wasi -Wno-deprecated

@@ -43,7 +43,8 @@ Equilibrium::Equilibrium(const Model& m, Cloth& g, const ForcePlan& force,
   left_.resize(fixed_.size());
 }
 
-/** Call use(number, depth, out, curvature) for each obstacle. */
+/** Call use(number, depth, out, curvature) for each obstacle. If that moves
+ * @a p, the next one sees it there. */
 template <typename Use>
 void Equilibrium::each_surface(const Point& p, Use use) const {
   std::size_t k = 0;
@@ -61,17 +62,14 @@ void Equilibrium::project() {
   for (unsigned i = 0; i < fixed_.size(); ++i)
     for (int round = 0; round < 20 && !fixed_[i]; ++round) {
       double most = 0;
-      const Point before = x[i];
-      each_surface(before, [&](std::size_t k, double, const Point&, double) {
-        each_surface(
-            x[i], [&](std::size_t l, double depth, const Point& out, double) {
-              const bool on =
-                  std::ranges::count(touched_[i], k, &Surface::number) > 0;
-              if (k != l || !(depth > 0 || on)) return;
-              x[i] += depth * out;
-              most = std::max(most, std::abs(depth));
-            });
-      });
+      each_surface(
+          x[i], [&](std::size_t k, double depth, const Point& out, double) {
+            const bool on =
+                std::ranges::count(touched_[i], k, &Surface::number) > 0;
+            if (!(depth > 0 || on)) return;
+            x[i] += depth * out;
+            most = std::max(most, std::abs(depth));
+          });
       if (most <= 1e-15 * size_) break;
     }
 }
@@ -112,14 +110,7 @@ void Equilibrium::find_contacts() {
       for (int c = 0; c < 3; ++c) free_[i].column[c] -= n[c] * four(n);
     }
   }
-  rest_.residual = std::sqrt(dot_product(left_, left_));
-}
-
-double Equilibrium::dot_product(const std::vector<Point>& a,
-                                const std::vector<Point>& b) const {
-  double sum = 0;
-  for (unsigned i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
-  return sum;
+  rest_.residual = std::sqrt(implicit_detail::dot_product(left_, left_));
 }
 
 /** Throws std::runtime_error: a node far away from where all nodes were. */
@@ -198,7 +189,8 @@ bool Equilibrium::try_step(const std::vector<Point>& way, double a,
                            double& energy) {
   auto x = arrays(g_).positions();
   const std::vector<Point> before(x.begin(), x.end());
-  const double slope = a * dot_product(left_, way), residual = rest_.residual;
+  const double slope = a * implicit_detail::dot_product(left_, way);
+  const double residual = rest_.residual;
   const double hidden = 1e-11 * (std::abs(energy) + rest_.load * size_);
   const bool close = slope <= hidden;
   for (unsigned i = 0; i < way.size(); ++i) x[i] += a * way[i];

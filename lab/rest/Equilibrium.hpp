@@ -99,8 +99,6 @@ class Equilibrium {
   double share_without_jump(const std::vector<Point>& way) const;
   void assemble();
   bool factor(double shift, bool clamp);
-  double dot_product(const std::vector<Point>& a,
-                     const std::vector<Point>& b) const;
   bool try_step(const std::vector<Point>& way, double a, double& energy);
 };
 

@@ -12,10 +12,6 @@
 
 namespace lab {
 
-namespace {
-constexpr double infinite = std::numeric_limits<double>::infinity();
-}
-
 Track::Track(double t_end, std::size_t nodes) {
   const double count =
       std::clamp(2e7 / double(std::max<std::size_t>(nodes, 1)), 8., 64.);
@@ -38,7 +34,7 @@ void Track::look(const Scene& scene) {
   s.x.assign(x.begin(), x.end());
   for (unsigned id = 0; id < s.x.size(); ++id)
     if (!arrays(g).node_in_use(id))
-      s.x[id] = Point(infinite, infinite, infinite);
+      s.x[id] = Point(no_limit, no_limit, no_limit);
 }
 
 Separation::Separation(const Track& a, const Track& b) {
@@ -56,7 +52,7 @@ Separation::Separation(const Track& a, const Track& b) {
       const bool p_removed = std::isinf(p.x), q_removed = std::isinf(q.x);
       if (p_removed && q_removed) continue;
       const double d2 =
-          p_removed || q_removed ? infinite : double(normSq(p - q));
+          p_removed || q_removed ? no_limit : double(normSq(p - q));
       ++count, at.rms += d2;
       at.largest = std::max(at.largest, std::sqrt(d2));
     }
