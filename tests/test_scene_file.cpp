@@ -304,6 +304,11 @@ TEST(KeyValues, SayWhatIsWrong) {
   EXPECT_EQ(error("k = [\n'['\n]\n [[[a"),
             "f:4: has a table, expected KEY = VALUE");
   EXPECT_EQ(error("k = {a = 1}"), "f:1: has a table, expected KEY = VALUE");
+  EXPECT_EQ(error("k = [1, }"), "f:1: has a table, expected KEY = VALUE");
+  for (const char* letter : {"\xC3\xA9", "\xE3\x80\x80", "\xFF"})
+    EXPECT_EQ(error("# \xC3\xA9\nk = " + std::string(letter)),
+              "f:2: has a letter out of quotes that is not ASCII, expected KEY "
+              "= VALUE");
   EXPECT_EQ(error("k.a = 1"), "f:1: k is a table" + expected);
   EXPECT_EQ(error("k = 1979-05-27"), "f:1: k is a date or a time" + expected);
   const std::string control =
@@ -313,7 +318,7 @@ TEST(KeyValues, SayWhatIsWrong) {
 
 // Tables in tables end as an error before the stack is too small for them.
 TEST(KeyValues, AreNotDeep) {
-  for (const char* part : {"[", "{a=", "a.", "[a.", "\"a\".", "'''\n."}) {
+  for (const char* part : {"[", "{a=", "a.", "[a.", "\"a\".", "'''\n.", "[}"}) {
     std::string deep;
     for (int i = 0; i < 100'000; ++i) deep += part;
     for (const std::string& text : {"k = " + deep, deep, deep + "a = 1"}) {

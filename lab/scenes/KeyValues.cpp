@@ -21,7 +21,7 @@ class Reader {
       : text_(text), file_(file) {}
 
   void read(const std::function<void(const KeyValue&, std::size_t)>& use) {
-    check_has_no_table();
+    check_can_be_parsed();
     const auto result = toml::parse(text_);
     if (!result) fail(result.error());
     std::vector<decltype(result.begin())> keys;
@@ -71,17 +71,19 @@ class Reader {
          ", expected text, a number or a list of them");
   }
 
-  /** Throws InputError: the text has a table, which no scene has. Tables in
-   * tables would need too much stack, and "[[[" ends toml++ 3.3. */
-  void check_has_no_table() {
+  /** Throws InputError: the text has a table, which no scene has, or a letter
+   * out of quotes that no key has. Tables in tables would need too much stack,
+   * and "[[[", "[}" or a letter with an accent end toml++ 3.3. */
+  void check_can_be_parsed() {
     int dots = 0, lists = 0;
     bool begins = true;  // a line
-    const auto fail_at = [&](std::size_t i) {
+    const auto fail_at = [&](std::size_t i, const char* what) {
       line_ = std::size_t(std::ranges::count(text_.substr(0, i), '\n')) + 1;
-      fail("has a table, expected KEY = VALUE");
+      fail(std::string("has a ") + what + ", expected KEY = VALUE");
     };
-    for (std::size_t i = 0; i < text_.size(); ++i) {
-      const char c = text_[i];
+    const std::size_t bom = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+    for (std::size_t i = bom; i < text_.size(); ++i) {
+      const auto c = static_cast<signed char>(text_[i]);
       if (c == '"' || c == '\'') {
         const std::string_view three = c == '"' ? "\"\"\"" : "'''";
         const auto end =
@@ -92,9 +94,11 @@ class Reader {
         i += end.size() - 1;
       } else if (c == '#') {
         i = std::min(text_.find('\n', i), text_.size()) - 1;
-      } else if (c == '{' || (c == '[' && begins && lists == 0) ||
+      } else if (c == '{' || c == '}' || (c == '[' && begins && lists == 0) ||
                  (c == '.' && ++dots > 1000)) {
-        fail_at(i);
+        fail_at(i, "table");
+      } else if (c < 0) {
+        fail_at(i, "letter out of quotes that is not ASCII");
       }
       lists += c == '[' ? 1 : c == ']' ? -1 : 0;
       begins = c == '\n' || (begins && (c == ' ' || c == '\t'));
