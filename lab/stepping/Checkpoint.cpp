@@ -19,7 +19,7 @@ namespace lab {
 namespace {
 
 constexpr const char* magic = "mass_spring checkpoint ";
-constexpr int version = 14;
+constexpr int version = 15;
 
 std::string first_line() { return magic + std::to_string(version) + '\n'; }
 

@@ -167,45 +167,58 @@ void Witness::restart() {
   whole_ = std::isfinite(t_end_) &&
            (asked_whole_ || scene_.work_of(steps) < Scene::trial_work);
   if (whole_ && scene_.was_changed()) kept_ = scene_.branch(0.5);
-  next_ = 0;
-  look_again();
+  each_ = scene_.dt(), look_due_ = begin_ + each_;
+  begin_windows();
 }
 
 void Witness::change() {
   said_.reset();
   if (scene_.steps() == 0) return restart();
-  if (!whole_ || !kept_) kept_.reset(), looks_.clear();
-  if (!std::exchange(whole_, false)) return;
-  next_ = 0;
-  look_again();
+  look_due_ = no_limit;
+  if (!whole_ || !kept_) kept_.reset(), looks_.clear(), window_looks_.clear();
+  if (std::exchange(whole_, false)) begin_windows();
 }
 
-/** Find when to look next: whole_: each 64th of the run; else 9 times in each
- * window. */
-void Witness::look_again() {
+void Witness::begin_windows() {
+  next_ = 0;
+  window_due_ = no_limit;
+  if (!whole_) next_in_window();
+}
+
+/** Find when to look at a window next: 9 times in each. */
+void Witness::next_in_window() {
   const double whole = std::isfinite(t_end_) ? t_end_ - begin_ : endless;
-  due_ = no_limit;
+  window_due_ = no_limit;
   if (!(whole > 0)) return;
   do {
-    const int k = next_++;
-    if (whole_) {
-      due_ = begin_ + whole * (k + 1) / looks;
-    } else {
-      const int each = window_looks + 1, window = k / each;
-      const int in_512ths = looks * (window + 1) - window_looks + k % each;
-      due_ = begin_ + whole * in_512ths / (looks * window_looks);
-    }
-  } while (due_ <= scene_.time());
+    constexpr int each = window_looks + 1;
+    const int in_512ths =
+        looks * (next_ / each + 1) - window_looks + next_ % each;
+    window_due_ = begin_ + whole * in_512ths / (looks * window_looks);
+    ++next_;
+  } while (window_due_ <= scene_.time());
+}
+
+/** Look at the state; of 64 looks, keep each second one. */
+void Witness::look() {
+  looks_.emplace_back(scene_);
+  if (looks_.size() >= looks) {
+    for (std::size_t k = 0; k < looks / 2; ++k) looks_[k] = looks_[2 * k + 1];
+    looks_.resize(looks / 2);
+    each_ *= 2;
+  }
+  look_due_ = begin_ + each_ * double(looks_.size() + 1);
 }
 
 void Witness::settle(long long now, long long /*settled*/) {
-  while (!looks_.empty() && looks_.back().step > now) looks_.pop_back();
-  if (scene_.failure() || scene_.time() < due_ - 1e-9 * scene_.dt()) return;
-  if (whole_)
-    looks_.emplace_back(scene_);
-  else
-    window();
-  look_again();
+  for (std::vector<Look>* of : {&looks_, &window_looks_})
+    while (!of->empty() && of->back().step > now) of->pop_back();
+  if (scene_.failure()) return;
+  const double time = scene_.time() + 1e-9 * scene_.dt();
+  if (time >= look_due_) look();
+  if (time < window_due_) return;
+  window();
+  next_in_window();
 }
 
 /** One look at a window, number next_ - 1. */
@@ -213,17 +226,17 @@ void Witness::window() {
   const int look = (next_ - 1) % (window_looks + 1);
   try {
     if (look == 0) {
-      looks_.clear();
+      window_looks_.clear();
       kept_ = scene_.branch(0.5);
       return;
     }
     if (!kept_ || kept_->time() >= scene_.time()) return;
-    looks_.emplace_back(scene_);
+    window_looks_.emplace_back(scene_);
     if (look < window_looks) return;
     double slack = 0;
     Verdict& v = windows_;
     const auto finer = kept_->branch(1);
-    std::vector<double> d = repeat(*finer, v, slack);
+    std::vector<double> d = repeat(*finer, window_looks_, v, slack);
     sweeps_ += sweeps_of(*finer);
     if (v.failed) return;
     v.slack = std::max(v.slack, slack);
@@ -251,14 +264,16 @@ double Witness::size() const {
   return std::max(side_of(g), double(norm(center_of_mass(g) - from_)));
 }
 
-/** Run @a finer through all looks_, with @a after as of run_to().
+/** Run @a finer through all @a looks, with @a after as of run_to().
  * @return what the run has more of energy at each, as an error [J] */
-std::vector<double> Witness::repeat(Scene& finer, Verdict& v, double& slack,
+std::vector<double> Witness::repeat(Scene& finer,
+                                    const std::vector<Look>& looks, Verdict& v,
+                                    double& slack,
                                     const std::function<void()>& after) const {
   const double factor = error_factor(scene_.model(), scene_.method());
   std::vector<double> d;
   const Look* before = nullptr;
-  for (const Look& run : looks_) {
+  for (const Look& run : looks) {
     if (!finer.run_to(run.time, after)) {
       v.failed = true;
       return d;
@@ -283,14 +298,16 @@ std::vector<double> Witness::repeat(Scene& finer, Verdict& v, double& slack,
 
 void Witness::archive(Archive& a, Witness* w) {
   std::vector<Look> looks;
-  if (w && w->whole_) looks = w->looks_;
-  a(looks);
+  double each = 0, due = no_limit;
+  if (w) looks = w->looks_, each = w->each_, due = w->look_due_;
+  a(looks)(each)(due).require(each >= 0 && due >= 0);
   for (const Look& l : looks)
     a.require(std::isfinite(l.time + l.total + l.internal + l.kinetic) &&
               l.step >= 0);
-  if (!a.loads() || !w || !w->whole_) return;
-  w->looks_ = std::move(looks);
-  w->look_again();
+  if (!a.loads() || !w) return;
+  w->looks_ = std::move(looks), w->each_ = each, w->look_due_ = due;
+  if (due == no_limit) w->whole_ = false, w->kept_.reset();  // was changed
+  w->begin_windows();
 }
 
 const Verdict& Witness::verdict(const Observer* asked) const {
@@ -312,7 +329,7 @@ Verdict Witness::judge_whole(const Observer* asked) const {
       observer.emplace(*finer);
     const std::function<void()> look =
         observer ? observer->after_steps() : nullptr;
-    const std::vector<double> d = repeat(*finer, v, v.slack, look);
+    const std::vector<double> d = repeat(*finer, looks_, v, v.slack, look);
     if (!v.failed) v.failed = !finer->run_to(scene_.time(), look);
     v.cost = sweeps_of(*finer) / std::max(1., sweeps_of(scene_));
     if (v.failed) return v;

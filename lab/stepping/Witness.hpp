@@ -1,6 +1,7 @@
 #pragma once
 /** @file Witness.hpp
  * Witness: judges a run by a second one with half of its step. */
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -74,8 +75,9 @@ struct Verdict {
  * answer to its question. No flow of energy is modelled: whatever acts, acts in
  * both runs.
  *
- * A run that is cheap is repeated from its start; both are compared at 64
- * times. Of any other 8 windows are repeated, each a 64th of the run and from
+ * A run that is cheap is repeated from its start; both are compared at 32 to 64
+ * times, which do not depend on its end, so that a restart may choose another.
+ * Of any other 8 windows are repeated, each a 64th of the run and from
  * its own state there, the last one up to the end: that costs a quarter of the
  * run. The differences that grow within the windows, summed, estimate the error
  * of the energy of the whole; the largest of them is what was seen. Contact and
@@ -92,7 +94,7 @@ class Witness final : public SettledReader {
   /** Looks at the present state, if that is due; at the end of a window,
    * repeats it. */
   void settle(long long now, long long settled) override;
-  double due() const override { return due_; }
+  double due() const override { return std::min(look_due_, window_due_); }
   /** The run begins anew. */
   void restart();
   /** Something was changed: what was kept is of another motion. */
@@ -104,7 +106,7 @@ class Witness final : public SettledReader {
    * too, unless it is all positions; null: none was asked
    * Throws Interrupted.  Complexity: twice the run; O(1) of windows */
   const Verdict& verdict(const Observer* asked = nullptr) const;
-  /** Save or load what a whole repetition is compared with.
+  /** Save or load what a repetition of all is compared with.
    * @param w null: save nothing, or forget what is loaded */
   static void archive(Archive& a, Witness* w);
   /** The last verdict, or null. */
@@ -123,12 +125,13 @@ class Witness final : public SettledReader {
   double t_end_;
   const bool asked_whole_;
   bool whole_ = false;
-  int next_ = 0;        // the next look, in 64ths, or in 512ths of the run
-  double due_ = 0;      // its time [s]
-  double begin_ = 0;    // of the run [s]
-  Point from_;          // the center of mass then [m]
-  unsigned edges_ = 0;  // then
-  std::vector<Look> looks_;
+  double each_ = 0;                       // time between looks [s]
+  double look_due_ = 0, window_due_ = 0;  // next [s]
+  int next_ = 0;                          // look at a window: 9 in each
+  double begin_ = 0;                      // of the run [s]
+  Point from_;                            // the center of mass then [m]
+  unsigned edges_ = 0;                    // then
+  std::vector<Look> looks_, window_looks_;
   std::unique_ptr<Scene> kept_;
   std::vector<double> drifts_;  // of the windows [J]
   Verdict windows_;             // what they showed so far
@@ -137,9 +140,12 @@ class Witness final : public SettledReader {
   mutable long long said_at_ = -1;  // steps
 
   double size() const;
-  void look_again();
+  void look();
+  void begin_windows();
+  void next_in_window();
   void window();
-  std::vector<double> repeat(Scene& finer, Verdict& v, double& slack,
+  std::vector<double> repeat(Scene& finer, const std::vector<Look>& looks,
+                             Verdict& v, double& slack,
                              const std::function<void()>& after = {}) const;
   Verdict judge_whole(const Observer* asked) const;
   Verdict judge_windows() const;
