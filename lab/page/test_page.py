@@ -307,7 +307,7 @@ def is_done(b, number, says):
 
 @test
 def tasks_are_answered_by_their_runs(b):
-    b.resize(360, 560)  # quickly drawn
+    b.resize(640, 480)  # quickly drawn
     opened(b)
     for number, says in ((0, "No: It explodes"), (1, "Right: It holds"),
                          (4, "No: half"), (5, "Right: It holds"),
