@@ -72,7 +72,7 @@ TEST_F(ClothProgram, KnowsTheStiffestStretchBeforeItStarts) {
 TEST_F(ClothProgram, CountsEnergyByTheForcesOfItsTime) {
   const Result r = success(net +
                            "--t-end 0.4 --method verlet --measure energy "
-                           "--at '0.2 gravity -5' --csv " +
+                           "--at '0.2 gravity 0 0 5' --csv " +
                            path("e.csv"));
   const auto last = rows(dir / "e.csv").back();
   EXPECT_GT(last[3], 0) << "below 0 it weighs upwards";

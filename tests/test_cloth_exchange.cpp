@@ -89,7 +89,9 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
        "springs, K 100 N/m: 2",
        "1 spring is listed from both ends: each counts"},
       {"--sheet 'nodes 3 3' --gravity -9.81",
-       "gravity -9.81 m/s^2 points up, 9.81 down: 9 nodes", ""},
+       "gravity 9.81 m/s^2 down: 9 nodes", ""},
+      {"--sheet 'nodes 3 3' --pin 'y 1' --gravity '3 -9 0'",
+       "gravity 3 -9 0 m/s^2: 9 nodes", ""},
       {"--sheet 'nodes 75 1' --pin 'x 0'", "75 nodes, 74 edges", ""}};
   for (const auto& c : cases) {
     const Result r = success(c.options + short_run);
@@ -239,7 +241,7 @@ TEST_F(ClothProgram, SaysWhatActsAndWhatItCosts) {
                   "a step of symplectic-euler, order 1: 1 force evaluation\n"
                   "  cloth of 5 x 5 nodes, 1 kg: 20 nodes moved\n"
                   "  springs, K 100 to 400 N/m: 72 springs\n"
-                  "  gravity 9.81 m/s^2: 25 nodes\n"
+                  "  gravity 9.81 m/s^2 down: 25 nodes\n"
                   "  drag 0.1 kg/s a node: 25 nodes\n"
                   "  plane at 0 0 -1: 25 nodes\n"
                   "  pin x 0: 5 nodes\n"));

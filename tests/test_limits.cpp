@@ -67,7 +67,8 @@ double highest_omega(const Problem& p) {
 bool stays_bounded(const Problem& p, const MethodEntry& method, double dt) {
   Start s(p);
   const double share = method.info.order > 1 ? 0.001 : 0.02;
-  const double most_gain = share * total_mass(s.cloth) * p.gravity;  // [J]
+  const double most_gain =
+      share * total_mass(s.cloth) * p.gravity.size();  // [J]
   double lowest = s.energy();
   auto made = method.make();
   for (int n = 0; n * dt < p.t_end; ++n) {

@@ -76,9 +76,14 @@ TEST(Live, GravityAcceleratesTheCenterOfMass) {
   live.apply("gravity 5");
   run(live, 100);
   EXPECT_NEAR(velocity(live.scene().cloth()).z, -0.5, 1e-13);
-  live.apply("gravity -2");
+  live.apply("gravity 0 0 2");
   run(live, 100);
   EXPECT_NEAR(velocity(live.scene().cloth()).z, -0.3, 1e-13);
+  live.apply("gravity 3 -4 0");
+  run(live, 100);
+  const Point v = velocity(live.scene().cloth());
+  EXPECT_NEAR(norm(v - Point(0.3, -0.4, -0.3)), 0, 1e-13);
+  EXPECT_EQ(live.model().gravity.size(), 5);
 }
 
 TEST(Live, DragOfEachNodeSlowsItDownByCOverM) {
@@ -556,9 +561,15 @@ TEST(Requests, AreRefusedAndChangeNothing) {
        {std::pair("", "ends too early, expected a request"),
         std::pair("gravitas 3",
                   "'gravitas' is not a request: did you mean gravity?"),
-        std::pair("gravity nan", "is not finite, expected a number"),
-        std::pair("gravity 1e999", "'1e999' is not a number"),
-        std::pair("gravity 1 0 0", "acts along z: expected 0 0 and a number"),
+        std::pair("gravity nan",
+                  "is not finite, expected an acceleration or a vector of "
+                  "three [m/s^2]"),
+        std::pair(
+            "gravity 1e999",
+            "'1e999' is not an acceleration or a vector of three [m/s^2]"),
+        std::pair("gravity 1 0",
+                  "ends too early, expected an acceleration or a vector of "
+                  "three [m/s^2]"),
         std::pair("move 1 2 3 4",
                   "continues with '4', expected the end of the line"),
         std::pair("stiffness -1", "-1 is not 0 N/m or more"),

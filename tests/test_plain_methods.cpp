@@ -113,7 +113,7 @@ struct Scene {
                       arrays(g).node_values().begin());
   }
   CombinedForces force() const {
-    const GravityForce gravity(problem.gravity);
+    const GravityForce gravity(problem.gravity.size());
     if (problem.driven())
       return make_combined_force(gravity, MassSpringForce(), Wind());
     return make_combined_force(gravity, MassSpringForce());

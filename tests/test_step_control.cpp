@@ -51,7 +51,7 @@ Watched watch(Scene& s, double t_end, int every = 8) {
     double moving = 0, weight = 0;
     for (Node n : s.cloth().nodes()) {
       moving += 0.5 * n.value().mass * normSq(n.value().vel);
-      weight += n.value().mass * s.model().gravity * n.position().z;
+      weight += n.value().mass * s.model().gravity.size() * n.position().z;
     }
     for (Edge e : s.cloth().edges())
       moving += 0.5 * e.value().K * std::pow(e.length() - e.value().L, 2);

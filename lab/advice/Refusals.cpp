@@ -59,7 +59,7 @@ std::string offers(const Model& m, const std::vector<Answer>& answers,
     // Four times the change by one perturbation, as others change it more.
     const double to = std::max(1e-5, 4 * distance(answers[k], shaken[k], what));
     const double scale = what == Measure(Measure::energy)
-                             ? total_mass(g) * m.gravity * size
+                             ? total_mass(g) * m.gravity.size() * size
                          : what == Measure(Measure::max_stretch) ? answers[k][0]
                                                                  : size;
     if (what != m.measure && to <= 0.1 * scale)

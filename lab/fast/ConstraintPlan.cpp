@@ -59,7 +59,7 @@ void HoldingConstraint::project(Cloth& g, double t, unsigned first,
 void SweptConstraint::archive(Archive& a) const {
   auto& [work, moment] = exchange_;
   a(work)(moment);
-  a.require(std::isfinite(work + moment));
+  a.require(std::isfinite(work + norm(moment)));
 }
 
 namespace {
@@ -103,7 +103,7 @@ class Tear final : public SweptConstraint {
         g, 0, arrays(g).node_slots(),
         [this](const Point& p) { return ball_.holds(p); },
         [&](Node n) {
-          exchange_.moment += n.value().mass * n.position().z;
+          exchange_.moment += n.value().mass * n.position();
           g.remove_node(n);
         });
   }
@@ -118,7 +118,7 @@ class Called final : public SweptConstraint {
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override {
     const auto version = arrays(g).version();
-    const double before = moment_of(g);
+    const Point before = moment_of(g);
     (*c_)(g, t);
     if (arrays(g).version() != version)
       exchange_.moment += before - moment_of(g);
@@ -127,7 +127,9 @@ class Called final : public SweptConstraint {
  private:
   std::shared_ptr<const ZeroConstraint> c_;
 
-  static double moment_of(const Cloth& g) { return gravitational_energy(g, 1); }
+  static Point moment_of(const Cloth& g) {
+    return total_mass(g) * center_of_mass(g);
+  }
 };
 
 }  // namespace

@@ -43,8 +43,8 @@ using PlaceVisitor = std::function<void(Node, const Place&)>;
 /** Energy that a constraint added to a cloth and removed from it, summed over
  * all calls since the constraint was made. */
 struct Exchange {
-  double work = 0;    ///< by moving obstacles: impulse times velocity [J]
-  double moment = 0;  ///< sum of m z of the nodes that were removed [kg m]
+  double work = 0;         ///< by moving obstacles: impulse times velocity [J]
+  Point moment = Point();  ///< sum of m x of removed nodes [kg m]
   Exchange& operator+=(const Exchange& b) {
     work += b.work, moment += b.moment;
     return *this;

@@ -27,9 +27,9 @@ double kinetic_energy(const Cloth& g) {
   });
 }
 
-double gravitational_energy(const Cloth& g, double gravity) {
-  return sum_over_nodes(g, [gravity](const Point& x, const NodeData& n) {
-    return n.mass * gravity * x.z;
+double gravitational_energy(const Cloth& g, const Gravity& gravity) {
+  return sum_over_nodes(g, [a = gravity.a](const Point& x, const NodeData& n) {
+    return n.mass * -a.z * x.z - n.mass * (a.x * x.x + a.y * x.y);
   });
 }
 

@@ -2,6 +2,7 @@
 /** @file Energy.hpp
  * Energies of a cloth, its mass, its center, and the stiffness of its springs.
  * Sums run over the graph's arrays, in the order of memory. */
+#include "lab/fast/Gravity.hpp"
 #include "mass_spring.hpp"
 
 namespace lab {
@@ -41,9 +42,8 @@ inline double spring_energy(double l, const EdgeData& s) {
 /** Sum of m |v|^2 / 2 [J].  O(N) */
 double kinetic_energy(const Cloth& g);
 
-/** Sum of m gravity z [J], zero at z = 0.  O(N)
- * @param gravity acceleration of free fall [m/s^2] */
-double gravitational_energy(const Cloth& g, double gravity = grav);
+/** Minus the sum of m a . x [J], zero at the origin.  O(N) */
+double gravitational_energy(const Cloth& g, const Gravity& gravity = grav);
 
 /** Sum of the springs' energies [J].  O(number of edges) */
 double elastic_energy(const Cloth& g);

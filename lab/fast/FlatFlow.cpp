@@ -288,7 +288,7 @@ void FlatFlow::kick(const Level& level, Rings& mine, unsigned first,
         by_graph_ ? mine.others.data() : nullptr,
         !exact_ && !force_->drag().none(),
         stage.keep ? cloth_.nodes()[stage.keep_in] : nullptr,
-        force_->gravity(),
+        force_->gravity().a,
         *stage.kick};
     lanes::run<kernels::KickTiles>(task, first, last);
   }

@@ -52,10 +52,11 @@ struct KickTask {
   const Point* others;  ///< other forces on node first and on, for whole tiles
   bool drag;            ///< whether drag acts
   double* kept;         ///< x of node 0 where a is stored; or null
-  double gravity, h;    ///< [m/s^2], [s]
+  Point gravity;        ///< [m/s^2]
+  double h;             ///< [s]
 };
 
-/** a = (springs + others - c v)/m - gravity, v += h a, for the tiles of nodes
+/** a = (springs + others - c v)/m + gravity, v += h a, for the tiles of nodes
  * [first, last). Each spring of a row is evaluated at its near end. */
 struct KickTiles {
   template <typename V>
@@ -68,7 +69,10 @@ struct KickTiles {
     const std::size_t s = nodes.stride(), num_rings = task.num_rings;
     const std::size_t next = num_rings > 0 ? task.rings[0].stride : 0;
     const FlatCloth::Rest* rest = task.cloth.rest();
-    const V h = V{} + task.h, gravity = V{} + task.gravity;
+    const V h = V{} + task.h;
+    const V gx = V{} + task.gravity.x, gy = V{} + task.gravity.y,
+            gz = V{} + task.gravity.z;
+    const bool tilted = task.gravity.x != 0 || task.gravity.y != 0;
     Row row[FlatCloth::most_rows];
     for (unsigned begin = first; begin < last; begin += tile) {
       // As far as there are nodes: a small cloth has less than a tile.
@@ -104,7 +108,8 @@ struct KickTiles {
         const auto v = load_columns<V>(to_v, s);
         if (task.drag) f = f - load<V>(nodes[FlatCloth::DragC] + i) * v;
         Points<V> a = load<V>(nodes[FlatCloth::PerMass] + i) * f;
-        a.z -= gravity;
+        a.z += gz;
+        if (tilted) a.x += gx, a.y += gy;
         if (task.kept) store_columns(task.kept + i, s, a);
         store_columns(to_v, s, v + h * a);
       }

@@ -36,7 +36,9 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   if (auto sum = exactly<CombinedForces, FunctionForce>(f)) {
     for (const auto& part : sum->parts) add(part);
   } else if (auto weight = exactly<GravityForce, FunctionForce>(f)) {
-    gravity_ += weight->gravity;
+    gravity_.a.z -= weight->gravity;
+  } else if (auto tilt = exactly<SidewaysForce, FunctionForce>(f)) {
+    gravity_.a += Point(tilt->x, tilt->y, 0);
   } else if (exactly<MassSpringForce, FunctionForce>(f)) {
     ++springs_;
   } else if (auto drag = exactly<DampingForce, FunctionForce>(f)) {

@@ -92,8 +92,8 @@ class ForcePlan {
   /** The number of evaluations; methods call count_evaluation() each time. */
   long long evaluations() const { return evaluations_; }
   void count_evaluation() const { ++evaluations_; }
-  /** The sum of g of all GravityForce terms [m/s^2]. */
-  double gravity() const { return gravity_; }
+  /** The sum of all terms GravityForce and SidewaysForce. */
+  const Gravity& gravity() const { return gravity_; }
   /** The energy [J] of weight, springs, and swept forces that have one. */
   double energy(const Cloth& g) const;
   /** The sum of its terms -c v: drag()[id] is the c [kg/s] of a node. */
@@ -116,7 +116,7 @@ class ForcePlan {
     const SweptForce* swept;  // the same; null: it is called
     bool acts() const { return !swept || swept->acts(); }
   };
-  double gravity_ = 0;  // [m/s^2]
+  Gravity gravity_ = 0.;
   int springs_ = 0;
   std::vector<Other> others_;  // in their order
   Drag drag_;

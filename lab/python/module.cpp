@@ -210,7 +210,7 @@ Simulation make_net(const py::object& x, const py::object& edges,
                     const py::object& k, const py::object& L,
                     const py::object& mass, const py::object& fixed,
                     const py::object& v, const py::object& drag,
-                    double gravity) {
+                    const py::object& gravity) {
   Net net;
   net.points = points_of(x, "x");
   const auto n = net.points.size();
@@ -241,9 +241,15 @@ Simulation make_net(const py::object& x, const py::object& edges,
                               : numbers_of(mass, "mass", n, true);
   net.held = nodes_of(fixed, "fixed", n);
   Model m;
-  m.name = "net", m.gravity = gravity;
+  m.name = "net";
+  const Array<double> a = real(gravity, "gravity");
+  if (a.size() != 1 && a.size() != 3)
+    refuse("gravity has shape " + shape_of(a) + ", expected a number or (3,)");
+  m.gravity = a.size() == 1
+                  ? Gravity(*a.data())
+                  : Gravity(Point(a.data()[0], a.data()[1], a.data()[2]));
+  if (!std::isfinite(m.gravity.size())) refuse("gravity is not finite");
   m.damping = numbers_of(drag, "drag", 1, false)[0];
-  if (!std::isfinite(gravity)) refuse("gravity is not finite");
   return {std::move(m), std::move(net)};
 }
 
@@ -442,13 +448,14 @@ void define_simulations(py::module_& module) {
       "as long as in x. mass [kg]: a number or (n,); None: 1 kg in all. "
       "fixed: nodes that are held, or a mask of n. v: velocities [m/s], (n, "
       "3); None: at rest. "
-      "drag: c of each node [kg/s], force -c v. gravity [m/s^2], along -z.\n\n"
+      "drag: c of each node [kg/s], force -c v. gravity [m/s^2]: a number acts "
+      "down, along -z; or a vector.\n\n"
       "Raises ValueError \"ARRAY[INDEX] is ..., expected ...\".")
       .def(py::init([](const py::object& x, const py::object& edges,
                        const py::object& k, const py::object& L,
                        const py::object& mass, const py::object& fixed,
                        const py::object& v, const py::object& drag,
-                       double gravity) {
+                       const py::object& gravity) {
              return FromArrays(
                  make_net(x, edges, k, L, mass, fixed, v, drag, gravity));
            }),

@@ -227,7 +227,7 @@ Rest Equilibrium::find(int most) {
   for (Node n : g_.nodes()) {
     if (fixed_[n.id()]) continue;
     const double m = n.value().mass;
-    rest_.load += m * std::abs(force_.gravity());
+    rest_.load += m * force_.gravity().size();
     pull = std::max(pull, norm(left_[n.id()]) / m);
   }
   if (rest_.load == 0) rest_.load = rest_.residual;

@@ -69,9 +69,9 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
     add("springs, K " + range(low, high) + " N/m",
         times + count_of(g.num_edges(), "spring"));
   if (m.gravity != 0)
-    add("gravity " + short_text(m.gravity) + " m/s^2" +
-            (m.gravity < 0 ? " points up, " + short_text(-m.gravity) + " down"
-                           : ""),
+    add("gravity " + (m.gravity.is_down()
+                          ? short_text(m.gravity.size()) + " m/s^2 down"
+                          : to_words(m.gravity) + " m/s^2"),
         times + each_node);
   if (const auto drag = m.material.drag; drag && *drag > 0)
     add("drag " + short_text(*drag) + " kg/(s m^2)", times + each_node);

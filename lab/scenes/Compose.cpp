@@ -372,8 +372,10 @@ Net net_left(const Cloth& g, const BuiltMesh& built,
 
 CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
   CombinedForces::List forces;
-  if (m.gravity != 0)
-    forces.push_back(std::make_shared<GravityForce>(m.gravity));
+  const Point a = m.gravity.a;
+  if (a.z != 0) forces.push_back(std::make_shared<GravityForce>(-a.z));
+  if (a.x != 0 || a.y != 0)
+    forces.push_back(std::make_shared<SidewaysForce>(a.x, a.y));
   forces.push_back(std::make_shared<MassSpringForce>());
   std::vector<double> c(arrays(g).node_slots(), m.damping);
   if (const auto drag = m.material.drag; drag && *drag > 0) {

@@ -8,6 +8,7 @@
 #include "CME212/Util.hpp"
 #include "lab/methods/Method.hpp"
 #include "lab/scenes/KeyValues.hpp"
+#include "lab/scenes/Line.hpp"
 #include "lab/scenes/Measure.hpp"
 
 namespace lab {
@@ -58,9 +59,8 @@ std::vector<Field> fields_of(Model& m) {
        "another material in a box: from X Y Z to X Y Z [m] mass-factor F "
        "stiffness-factor F, for the mass of nodes and K of edges in it"},
       {"gravity", number, scene, &m.gravity,
-       "acceleration of free fall [m/s^2], along -z; or as a vector, '0 0 "
-       "-9.81'",
-       "an acceleration [m/s^2], or 0 0 and that along z"},
+       "acceleration of free fall [m/s^2]: a number acts down, along -z; or a "
+       "vector, '0 -9.81 0'"},
       {"pin", acts, scene, &m.pins,
        "hold the nodes that start at x X y Y z Z [m] (at least one of these), "
        "or move them: velocity X Y Z [m/s] turn X Y Z [rad/s] about X Y Z [m] "
@@ -137,11 +137,8 @@ void read(const Field& f, const std::string& text, T& a) {
   } else if constexpr (Optional<T>) {
     if (!text.empty()) read(f, text, a.emplace());
   } else if constexpr (std::is_same_v<T, double>) {
-    const bool is_vector =
-        f.name == std::string_view("gravity") && text.starts_with("0 0 ");
     char* end = nullptr;
-    a = std::strtod(text.c_str() + (is_vector ? 4 : 0), &end);
-    if (is_vector) a = -a;
+    a = std::strtod(text.c_str(), &end);
     if (f.percent && (*f.percent = *end == '%')) ++end;
     if (text.empty() || *end != '\0' || !std::isfinite(a) ||
         (f.range != Word::Range::any && a < 0) ||
@@ -159,6 +156,11 @@ void read(const Field& f, const std::string& text, T& a) {
     if (!is_utf8(a))
       throw SceneError(f.name, printable(a),
                        "a name in UTF-8, as scene files are");
+  } else if constexpr (std::is_same_v<T, Gravity>) {
+    Line in(text);
+    a = read_gravity(in), in.end();
+    if (!in.error().empty())
+      throw SceneError(f.name, printable(text), gravity_expected);
   } else if constexpr (std::is_same_v<T, TimeStep>) {
     a = read_time_step(text);
   } else if constexpr (std::is_same_v<T, Measure>) {
@@ -197,6 +199,7 @@ const char* Field::type() const {
   if (std::holds_alternative<std::string*>(member)) return "FILE";
   if (std::holds_alternative<TimeStep*>(member))
     return "FLOAT|auto[:sharp][:G]";
+  if (std::holds_alternative<Gravity*>(member)) return "FLOAT|VECTOR";
   return std::holds_alternative<double*>(member) ||
                  std::holds_alternative<std::optional<double>*>(member)
              ? "FLOAT"

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/fast/Gravity.hpp"
 #include "lab/fast/Motion.hpp"
 #include "mass_spring.hpp"
 
@@ -214,8 +215,8 @@ struct Model {
   Material material;
   std::vector<Region> regions;
   // What acts on it
-  double gravity = grav;  ///< acceleration of free fall [m/s^2]
-  double damping = 0;     ///< drag coefficient c of a node [kg/s], >= 0
+  Gravity gravity;
+  double damping = 0;  ///< drag coefficient c of a node [kg/s], >= 0
   std::optional<Wind> wind;
   std::vector<Pin> pins;
   std::vector<Wall> planes;

@@ -52,7 +52,7 @@ struct Requests {
     /** Read what follows the name; if the target is not null, change it.
      * @pre null, or the line makes sense */
     std::function<void(Line&, Target*)> run;
-    double& (*parameter)(Model&) = nullptr;  // that it sets, if it sets one
+    std::function<double(Model&)> parameter = {};  // that it sets, if one
   };
   std::vector<Request> all;
 

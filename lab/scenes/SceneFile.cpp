@@ -133,7 +133,9 @@ std::string to_scene_file(const Model& m,
     std::string list;
     for (const std::string& value : values) {
       if (!list.empty()) list += ", ";
-      if (f.type() == std::string_view("FLOAT") && !value.ends_with('%'))
+      const std::string_view type = f.type();
+      if ((type == "FLOAT" || type == "FLOAT|VECTOR") &&
+          value.find_first_of("% ") == std::string::npos)
         list += value;
       else
         list += in_quotes(f.role == Role::mesh ? absolute(value) : value);

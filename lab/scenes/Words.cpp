@@ -12,6 +12,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/scenes/Line.hpp"
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Nearest.hpp"
 
@@ -402,6 +403,20 @@ std::string to_words(const TimeStep& s) {
   if (s.fixed()) return exact_text(s.dt);
   return std::string(s.rule == StepRule::sharp ? "auto:sharp" : "auto") +
          (s.gain == TimeStep().gain ? "" : ':' + exact_text(s.gain));
+}
+
+std::string to_words(const Gravity& gravity) {
+  const Point& a = gravity.a;
+  return gravity.is_down()
+             ? exact_text(gravity.size())
+             : exact_text(a.x) + ' ' + exact_text(a.y) + ' ' + exact_text(a.z);
+}
+
+Gravity read_gravity(Line& in) {
+  const double x = in.number(gravity_expected);
+  if (in.at_end()) return x;
+  const double y = in.number(gravity_expected);
+  return Gravity(Point(x, y, in.number(gravity_expected)));
 }
 
 }  // namespace lab

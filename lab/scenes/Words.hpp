@@ -14,6 +14,8 @@
 
 namespace lab {
 
+class Line;
+
 /** A word of a part. */
 struct Word {
   enum class Range { any, not_negative, positive };
@@ -55,7 +57,7 @@ Words words_of(Box&);
 using Member =
     std::variant<bool*, double*, std::string*, std::vector<std::string>*,
                  TimeStep*, const MethodEntry**, Measure*, Edges*,
-                 std::optional<double>*, std::optional<Distance>*,
+                 std::optional<double>*, std::optional<Distance>*, Gravity*,
                  std::optional<Box>*, std::optional<Wind>*, std::vector<Sheet>*,
                  std::vector<Region>*, std::vector<Pin>*, std::vector<Wall>*,
                  std::vector<Solid>*, std::vector<Ball>*>;
@@ -95,5 +97,11 @@ const MethodEntry* method_named(std::string_view name, std::string& hint);
  * Throws SceneError: anything else */
 TimeStep read_time_step(const std::string& text);
 std::string to_words(const TimeStep&);
+/** A number if it acts down, else three, with all digits. */
+std::string to_words(const Gravity&);
+inline constexpr const char* gravity_expected =
+    "an acceleration or a vector of three [m/s^2]";
+/** The next number or three of @a in, which says if they are none. */
+Gravity read_gravity(Line& in);
 
 }  // namespace lab

@@ -8,7 +8,8 @@
 
 namespace lab {
 
-Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow) {
+Energies energies(const Cloth& g, const Gravity& gravity,
+                  const EnergyFlow& flow) {
   Energies e = {kinetic_energy(g), elastic_energy(g),
                 gravitational_energy(g, gravity)};
   Point carrier = flow.carried;
@@ -20,7 +21,7 @@ Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow) {
       mass += n.value().mass;
     }
     if (mass > 0) carrier = momentum / mass;
-    e.fall_power = std::abs(gravity * momentum.z);
+    e.fall_power = std::abs(dot(gravity.a, momentum));
   }
   e.relative = e.kinetic;
   if (carrier == Point()) return e;
@@ -31,7 +32,8 @@ Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow) {
 }
 
 EnergyBalance::EnergyBalance(const Cloth& g, double t, CombinedForces force,
-                             const ConstraintPlan& constraint, double gravity)
+                             const ConstraintPlan& constraint,
+                             const Gravity& gravity)
     : force_(std::move(force)), gravity_(gravity) {
   constraint.each_held(g, [this](Node n) { held_.push_back({n, {}, {}, {}}); });
   std::ranges::sort(held_, {}, &Held::node);
@@ -47,7 +49,7 @@ void EnergyBalance::follow(const Cloth& g, double t,
                            const ConstraintPlan& constraint) {
   const Exchange now = constraint.exchange();
   flow_.work += now.work - seen_.work;
-  flow_.removed += gravity_ * (now.moment - seen_.moment);
+  flow_.removed -= dot(gravity_.a, now.moment - seen_.moment);
   seen_ = now;
   const double step = t - time_;
   const bool same = std::abs(step - step_) < 1e-9 * step;

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
+#include "lab/fast/Gravity.hpp"
 
 namespace lab {
 
 /** The energy of a cloth [J]. */
 struct Energies {
   double kinetic = 0, elastic = 0;
-  double gravitational = 0;  ///< 0 at z = 0
+  double gravitational = 0;  ///< 0 at the origin
   double relative = 0;       ///< kinetic, relative to the carrier: EnergyFlow
   double fall_power = 0;     ///< |power of gravity| on a loose cloth [W]
   double total() const { return kinetic + elastic + gravitational; }
@@ -41,8 +42,9 @@ struct EnergyFlow {
 };
 
 /** The energies of @a g.  O(N + springs)
- * @param gravity [m/s^2]   @param flow only carried and loose are used */
-Energies energies(const Cloth& g, double gravity, const EnergyFlow& flow = {});
+ * @param flow only carried and loose are used */
+Energies energies(const Cloth& g, const Gravity& gravity,
+                  const EnergyFlow& flow = {});
 
 /** The gain of energy that is tolerated by default, as a share of the largest
  * internal energy; see StepControl. */
@@ -65,10 +67,10 @@ inline double balance(const Energies& e, const EnergyFlow& flow) {
  * (Adams and Moulton; Hairer, Norsett, Wanner, Solving ODEs I, III.1). */
 class EnergyBalance {
  public:
-  /** @param g at the start, time @a t   @param gravity [m/s^2]
+  /** @param g at the start, time @a t
    * @param force all forces on a node */
   EnergyBalance(const Cloth& g, double t, CombinedForces force,
-                const ConstraintPlan& constraint, double gravity);
+                const ConstraintPlan& constraint, const Gravity& gravity);
 
   /** Add the energy that a step to time @a t brought or removed.
    * O(held nodes + springs at those that moved) */
@@ -94,7 +96,7 @@ class EnergyBalance {
     }
     auto& [work, moment] = seen_;
     a(work)(moment)(flow_)(time_)(step_);
-    a.require(std::isfinite(work + moment + time_ + step_));
+    a.require(std::isfinite(work + norm(moment) + time_ + step_));
   }
 
  private:
@@ -105,7 +107,7 @@ class EnergyBalance {
     bool follows = false;          // it moved in that step
   };
   CombinedForces force_;
-  double gravity_;
+  Gravity gravity_;
   std::vector<Held> held_;
   Held pulled_;  // force: that of pull_ alone
   const ZeroForce* pull_ = nullptr;

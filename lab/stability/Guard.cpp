@@ -9,14 +9,14 @@
 
 namespace lab {
 
-DivergenceGuard::DivergenceGuard(const Cloth& g, double gravity, double dt,
-                                 const EnergyFlow& flow)
+DivergenceGuard::DivergenceGuard(const Cloth& g, const Gravity& gravity,
+                                 double dt, const EnergyFlow& flow)
     : gravity_(gravity), dt_(dt) {
   const Energies e = energies(g, gravity, flow);
   start_ = balance(e, flow);
   drag_ = flow.drag;
   available_ = e.internal();
-  const double fall = gravity * dt;  // [m/s]
+  const double fall = gravity.size() * dt;  // [m/s]
   constexpr double strain = 1e-6;
   for (Edge e : g.edges())
     round_off_ += spring_energy((1 + strain) * e.value().L, e.value());

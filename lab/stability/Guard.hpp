@@ -51,10 +51,10 @@ class DivergenceGuard {
    * a stable run is stopped if all its energy is in the fastest waves. */
   static constexpr double margin = 4;
 
-  /** @param g The cloth at the start   @param gravity [m/s^2]
+  /** @param g The cloth at the start
    * @param dt the longest step of the run [s]
    * @param flow until now; accept() gets later values of the same sums */
-  DivergenceGuard(const Cloth& g, double gravity, double dt,
+  DivergenceGuard(const Cloth& g, const Gravity& gravity, double dt,
                   const EnergyFlow& flow = {});
 
   /** True if the state of @a g is good; then it is kept.  O(N + springs)
@@ -88,9 +88,10 @@ class DivergenceGuard {
   }
 
  private:
-  double gravity_, dt_;  // [m/s^2, s]
-  double start_ = 0;     // the balance at the start [J]
-  double drag_ = 0;      // flow.drag then [J]
+  Gravity gravity_;
+  double dt_;         // [s]
+  double start_ = 0;  // the balance at the start [J]
+  double drag_ = 0;   // flow.drag then [J]
   double floor_ = 0, round_off_ = 0, available_ = 0;  // the most so far [J]
   NodeStates kept_;
 };

@@ -2,28 +2,29 @@
 
 #include "CME212/Util.hpp"
 #include "lab/scenes/KeyValues.hpp"
+#include "lab/scenes/Words.hpp"
 #include "lab/stepping/Scene.hpp"
 
 namespace lab {
 
 namespace {
 
-/** Add a request that sets a number of the model, which is @a least or more. */
-void sets(Requests<Scene>& table, std::string_view name, const char* expected,
-          double least, double& (*parameter)(Model&)) {
+double size_of(double a) { return a; }
+double size_of(const Gravity& a) { return a.size(); }
+
+/** Add a request that sets a member of the model to what @a read reads. */
+template <typename T>
+void sets(Requests<Scene>& table, std::string_view name, T (*read)(Line&),
+          T& (*member)(Model&)) {
   const auto run = [=](Line& in, Scene* scene) {
-    double a = in.number(expected, least);
-    if (name == "gravity" && !in.at_end()) {  // as a vector
-      const double x = a, y = in.number(expected);
-      a = -in.number(expected);
-      if (x != 0 || y != 0) in.fail("acts along z: expected 0 0 and a number");
-    }
+    const T a = read(in);
     in.end();
     if (!scene) return;
     Model m = scene->model();
-    parameter(m) = a, scene->change_forces(m);
+    member(m) = a, scene->change_forces(m);
   };
-  table.all.push_back({name, Requests<Scene>::override, run, parameter});
+  table.all.push_back({name, Requests<Scene>::override, run,
+                       [=](Model& m) { return size_of(member(m)); }});
 }
 
 Requests<Scene> make_table() {
@@ -33,16 +34,21 @@ Requests<Scene> make_table() {
   table.on("method", plain,
            [](Scene& s, const MethodEntry* m) { s.take_method(*m); });
   // K [N/m], or the modulus of a scene that has one; rest lengths stay.
-  sets(table, "stiffness", "0 N/m or more", 0, [](Model& m) -> double& {
-    return m.material.modulus ? *m.material.modulus : m.stiffness;
-  });
+  sets<double>(
+      table, "stiffness",
+      [](Line& in) { return in.number("0 N/m or more", 0.); },
+      [](Model& m) -> double& {
+        return m.material.modulus ? *m.material.modulus : m.stiffness;
+      });
   // c of each node [kg/s]; or by area [kg/(s m^2)], if the scene has that.
-  sets(table, "drag", "0 or more", 0, [](Model& m) -> double& {
-    return m.material.drag ? *m.material.drag : m.damping;
-  });
-  // g, or 0 0 -g [m/s^2]
-  sets(table, "gravity", "a number", -no_limit,
-       [](Model& m) -> double& { return m.gravity; });
+  sets<double>(
+      table, "drag", [](Line& in) { return in.number("0 or more", 0.); },
+      [](Model& m) -> double& {
+        return m.material.drag ? *m.material.drag : m.damping;
+      });
+  // A number, which acts down, or a vector [m/s^2]
+  sets<Gravity>(table, "gravity", read_gravity,
+                [](Model& m) -> Gravity& { return m.gravity; });
   // Remove edges, each by its ends.
   table.on("cut", plain, [](Scene& s, std::vector<Ends> edges) {
     for (Ends& e : edges) e = {s.id_of(e[0]), s.id_of(e[1])};

@@ -383,7 +383,7 @@ void Stepper::keep_checked() {
   version_ = arrays(system_.cloth).version();
   const double thin = constraint_.thinnest();
   if (!std::isfinite(thin)) return;
-  const double gain = std::abs(system_.gravity) * guard_interval * clock_.dt;
+  const double gain = system_.gravity.size() * guard_interval * clock_.dt;
   system_.watched->watch(
       system_.cloth, (max_speed(system_.cloth) + gain) * clock_.dt > thin / 8);
 }

@@ -43,7 +43,7 @@ struct StepClock {
  * into the cloth. */
 struct System {
   Cloth cloth;
-  double gravity = grav;                          ///< [m/s^2]
+  Gravity gravity;
   Point wind = Point();                           ///< [m/s]
   CombinedForces acting{CombinedForces::List()};  ///< without the hand
   std::optional<HandForce> hand;

@@ -46,6 +46,12 @@ def grid(n: int, m: int) -> tuple[list, list]:
     return points, faces
 
 
+def gravity(a: Any) -> Array:
+    """The acceleration of a vector or of a number, which acts down."""
+    a = np.atleast_1d(a)
+    return a if len(a) == 3 else np.array([0, 0, -abs(a[0])])
+
+
 def turned(arm: Array, turn: Array, time: float) -> Array:
     """Rodrigues: arm, turned by the angular velocity in a time."""
     k, a = turn / (norm(turn) or 1), norm(turn) * time
@@ -88,7 +94,7 @@ class Net:
         self.c = (s["drag"] * share if "drag" in s else
                   np.full(self.n, s.get("damping", 0.)))
         self.wind = np.array(s.get("wind", {}).get("velocity", (0, 0, 0)))
-        self.g = s.get("gravity", G)
+        self.g = gravity(s.get("gravity", G))
         self.springs(listed)
         for r in s.get("region", []):
             low, high = np.sort([r["from"], r["to"]], axis=0)
@@ -167,14 +173,14 @@ class Net:
         l = np.maximum(norm(u, axis=-1), 1e-300)
         f = self.C @ ((self.K * (1 - self.L / l))[..., None] * u)
         f -= self.c[:, None] * (v - self.wind)
-        f[..., 2] -= self.g * self.m
+        f += self.m[:, None] * self.g
         return f
 
     def energies(self, x: Array, v: Array) -> dict[str, float]:
         l = norm(x[self.j] - x[self.i], axis=1)
         return {"kinetic": np.sum(self.m * np.sum(v * v, 1)) / 2,
                 "elastic": np.sum(self.K * (l - self.L)**2) / 2,
-                "gravitational": np.sum(self.m * self.g * x[:, 2])}
+                "gravitational": -np.sum(self.m * (x @ self.g))}
 
     def omega(self) -> float:
         """The largest frequency [1/s] of K on the graph, which bounds those
@@ -191,7 +197,7 @@ class Net:
         if word == "stiffness":
             self.K[self.free] = float(rest[0]) * self.factor[self.free]
         elif word == "gravity":
-            self.g = float(rest[0])
+            self.g = gravity([float(a) for a in rest])
         elif word == "unpin":
             self.pins = [([k for k in nodes if k != int(rest[0])], p)
                          for nodes, p in self.pins]

@@ -143,7 +143,7 @@ class Draw:
         net = Net(self.s)
         k = int(self.rng.integers(net.n))
         time = self.s["t-end"] * self.rng.random()
-        way = net.v[k] * time + np.array((0, 0, -net.g)) * time**2 / 2
+        way = net.v[k] * time + net.g * time**2 / 2
         return net.x[k] + way, way
 
     def plane(self) -> Scene:
@@ -180,12 +180,17 @@ class Draw:
             self.s.pop(field, None)
         return self.number(1e-6, 1e-3)
 
+    def gravity(self) -> Any:  # a number acts down, whatever its sign
+        if self.chance(.3):
+            return self.vector(15)
+        return 0. if self.chance(.3) else self.number(-15, 30)
+
     def at(self) -> list:
         net, dt = Net(self.s), self.s["dt"]
         k = int(self.rng.integers(1, max(2, self.s["t-end"] / dt - 4)))
         e = int(self.rng.integers(len(net.i)))
         requests = [f"cut {net.i[e]} {net.j[e]}",
-                    f"gravity {self.number(-10, 20)}"]
+                    "gravity " + row(np.atleast_1d(self.gravity()).tolist())]
         if "modulus" not in self.s:
             requests.append(f"stiffness {self.number(10, 400)}")
         if net.held():
@@ -217,7 +222,7 @@ FIELDS: dict[str, Any] = {
     "rest-length": (.7, 1.3), "density": (.05, 5), "damping": (1e-3, .3),
     "drag": (1e-3, 3), "region": lambda d: d.several(d.region),
     "wind": lambda d: {"velocity": d.vector(5)},
-    "gravity": lambda d: 0. if d.chance(.3) else d.number(-15, 30),
+    "gravity": Draw.gravity,
     "pin": lambda d: d.several(d.pin), "method": lambda d: d.one_of(
         METHODS + ["verlet"] * 5 + ["symplectic-euler"] * 3),
     "t-end": Draw.t_end, "at": Draw.at,
@@ -285,6 +290,8 @@ def options(s: Scene, folder: pathlib.Path) -> list[str]:
             continue
         for one in value if isinstance(value, list) else [value]:
             all_ += ["--" + field, words(one) if isinstance(one, dict) else
+                     row(one) if field == "gravity" and (
+                         isinstance(one, tuple)) else
                      "%r %s" % one if isinstance(one, tuple) else
                      one if isinstance(one, str) else repr(one)]
     return all_
