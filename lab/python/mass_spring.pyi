@@ -34,6 +34,18 @@ class Result:
     status: int
     why: Failure | None
 
+class Rest:
+    x: NDArray[float64]
+    force: NDArray[float64]
+    pins: list[tuple[str, list[float]]]
+    residual: float
+    load: float
+    factors: int
+    stable: bool
+    growing: list[int]
+    loose: list[int]
+    frequencies: list[float]
+
 class Advice:
     refusal: str
     method: str
@@ -51,6 +63,7 @@ class Scene:
             dt: float | str | None = None, *, every: float | None = None,
             atol: float | None = None, x0: ArrayLike | None = None,
             v0: ArrayLike | None = None) -> Result: ...
+    def rest(self) -> Rest: ...
     def force(self, x: ArrayLike, v: ArrayLike, t: float = 0.0
               ) -> NDArray[float64]: ...
     def advise(self, tolerance: float | None = None, method: str = ""

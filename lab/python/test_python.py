@@ -74,6 +74,41 @@ def test_force_is_that_of_springs_weight_and_drag():
     assert f == pytest.approx(np.array([[0, 0, 18 - 2], [-2, 0, -18 - 2]]))
 
 
+def hung_mass(z=-1.0, **changes):
+    """A mass of 2 kg below a held one, by a spring as long as that is deep."""
+    given: dict[str, Any] = {"k": 50.0, "mass": 2.0, "fixed": [0],
+                             "gravity": 10.0, **changes}
+    return mass_spring.Net([[0.0, 0, 0], [0, 0, z]], [[0, 1]], **given)
+
+
+def test_rest_is_where_a_mass_hangs_with_its_frequencies():
+    r = hung_mass().rest()
+    assert r.x == pytest.approx(np.array([[0, 0, 0], [0, 0, -1.4]]), abs=1e-9)
+    assert r.residual <= 1e-10 * r.load and r.load == 20 and r.factors > 0
+    assert r.stable and (r.growing, r.loose) == ([], [])
+    assert r.frequencies == pytest.approx(
+        np.sqrt([10 / 1.4, 10 / 1.4, 25]) / (2 * np.pi))
+    assert r.pins == [("held by the net", pytest.approx([0, 0, -40]))]
+    assert r.force == pytest.approx(
+        np.array([[0, 0, -40], [0, 0, 0]]), abs=1e-8)
+    assert "stable: the smallest eigenvalue is 7.14286 1/s^2" in str(r)
+
+
+def test_rest_names_what_does_not_stay_and_refuses_what_moves():
+    r = hung_mass(1.0).rest()
+    assert (r.stable, r.growing, r.loose) == (False, [1], [])
+    r = hung_mass(gravity=0).rest()
+    assert (r.stable, r.growing, r.loose) == (False, [], [1])
+    with pytest.raises(RuntimeError, match="^no rest: nothing holds node 0, "
+                       "which falls without end$"):
+        hung_mass(fixed=[]).rest()
+    curtain = mass_spring.scene(str(root / "data/scenes/curtain.toml"))
+    with pytest.raises(ValueError, match="^rest cannot be that of moving pins"):
+        curtain.rest()
+    with pytest.raises(ValueError, match=": nodes is missing: expected files"):
+        mass_spring.scene(str(root / "data/scenes/tear.toml"))
+
+
 def test_scene_runs_as_the_program_does():
     s = mass_spring.scene(str(root / "data/scenes/curtain.toml"))
     r = s.run(t_end=0.2)
