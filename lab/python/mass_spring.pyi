@@ -3,59 +3,107 @@
 SI units; z points up. n nodes, e springs, k states. docs/python.md has
 examples, help(mass_spring.Net) the meaning of each argument.
 """
+from os import PathLike
+from typing import Final, NoReturn
+
 from numpy.typing import ArrayLike, NDArray
 from numpy import float64
 
-class Method:
-    name: str
-    order: int
-    forces: int
-    limit: float
-    good_for: str
-    fails_when: str
-    source: str
+__version__: Final[str]
 
-class Failure:
-    kind: str
-    step: int
-    time: float
-    dt: float
-    node: int | None
-    cause: str
-    cure: tuple[str, float] | None
+class _Given:
+    """What this module makes, and nobody else."""
+    def __init__(self, *args: NoReturn, **kwargs: NoReturn) -> None: ...
 
-class Result:
-    t: NDArray[float64]
-    x: NDArray[float64]
-    v: NDArray[float64]
-    energy: NDArray[float64]
-    work: int
-    steps: int
-    status: int
-    why: Failure | None
+class Method(_Given):
+    @property
+    def name(self) -> str: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def forces(self) -> int: ...
+    @property
+    def limit(self) -> float: ...
+    @property
+    def good_for(self) -> str: ...
+    @property
+    def fails_when(self) -> str: ...
+    @property
+    def source(self) -> str: ...
 
-class Rest:
-    x: NDArray[float64]
-    force: NDArray[float64]
-    pins: list[tuple[str, list[float]]]
-    residual: float
-    load: float
-    factors: int
-    stable: bool
-    growing: list[int]
-    loose: list[int]
-    frequencies: list[float]
+class Failure(_Given):
+    @property
+    def kind(self) -> str: ...
+    @property
+    def step(self) -> int: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def dt(self) -> float: ...
+    @property
+    def node(self) -> int | None: ...
+    @property
+    def cause(self) -> str: ...
+    @property
+    def cure(self) -> tuple[str, float] | None: ...
 
-class Advice:
-    refusal: str
-    method: str
-    dt: float
-    error: float
-    tolerance: float
-    work: float
-    scene: Scene
+class Result(_Given):
+    @property
+    def t(self) -> NDArray[float64]: ...
+    @property
+    def x(self) -> NDArray[float64]: ...
+    @property
+    def v(self) -> NDArray[float64]: ...
+    @property
+    def energy(self) -> NDArray[float64]: ...
+    @property
+    def work(self) -> int: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def status(self) -> int: ...
+    @property
+    def why(self) -> Failure | None: ...
 
-class Scene:
+class Rest(_Given):
+    @property
+    def x(self) -> NDArray[float64]: ...
+    @property
+    def force(self) -> NDArray[float64]: ...
+    @property
+    def pins(self) -> list[tuple[str, list[float]]]: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def load(self) -> float: ...
+    @property
+    def factors(self) -> int: ...
+    @property
+    def stable(self) -> bool: ...
+    @property
+    def growing(self) -> list[int]: ...
+    @property
+    def loose(self) -> list[int]: ...
+    @property
+    def frequencies(self) -> list[float]: ...
+
+class Advice(_Given):
+    @property
+    def refusal(self) -> str: ...
+    @property
+    def method(self) -> str: ...
+    @property
+    def dt(self) -> float: ...
+    @property
+    def error(self) -> float: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def work(self) -> float: ...
+    @property
+    def scene(self) -> Scene: ...
+
+class Scene(_Given):
     @property
     def x(self) -> NDArray[float64]: ...
     def limit(self, method: str) -> float: ...
@@ -76,5 +124,5 @@ class Net(Scene):
                  v: ArrayLike | None = None, drag: float = 0.0,
                  gravity: float = 9.81) -> None: ...
 
-def scene(file: str) -> Scene: ...
+def scene(file: str | PathLike[str]) -> Scene: ...
 def methods() -> list[Method]: ...

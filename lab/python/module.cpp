@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <regex>
 #include <string>
@@ -14,11 +15,13 @@
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
+#include "lab/fast/Version.hpp"
 #include "lab/python/Arrays.hpp"
 #include "lab/python/Signals.hpp"
 #include "lab/python/Simulation.hpp"
@@ -120,9 +123,16 @@ void translate_errors() {
   });
 }
 
+/** A class whose metaclass is that of Python's own. */
+template <typename... T>
+py::class_<T...> define(py::module_& module, const char* name,
+                        const char* meaning) {
+  return {module, name, meaning, py::metaclass((PyObject*)&PyType_Type)};
+}
+
 void define_values(py::module_& module) {
   using M = MethodInfo;
-  py::class_<M>(module, "Method", "A method: what it declares of itself.")
+  define<M>(module, "Method", "A method: what it declares of itself.")
       .def_readonly("name", &M::name)
       .def_readonly("order", &M::order, "The error of a run goes as dt**order.")
       .def_readonly("forces", &M::sweeps,
@@ -135,7 +145,7 @@ void define_values(py::module_& module) {
       .def("__repr__",
            [](const M& m) { return "<Method " + std::string(m.name) + '>'; });
 
-  py::class_<Why>(module, "Failure", "How and why a run failed.")
+  define<Why>(module, "Failure", "How and why a run failed.")
       .def_readonly("kind", &Why::kind,
                     "'start', 'diverged', 'refused'; or 'energy': the method "
                     "has added energy, so this is not the scene's motion.")
@@ -162,7 +172,7 @@ void define_values(py::module_& module) {
           shape, reinterpret_cast<const double*>((r.*values).data()), self);
     };
   };
-  py::class_<Result>(module, "Result", "The states of a run: k of n nodes.")
+  define<Result>(module, "Result", "The states of a run: k of n nodes.")
       .def_property_readonly("t", array(&Result::t, false),
                              "Times [s], shape (k,).")
       .def_property_readonly(
@@ -184,8 +194,7 @@ void define_values(py::module_& module) {
   const auto rows = [](std::vector<Point> AtRest::*points) {
     return [=](const AtRest& r) { return as_array(r.*points); };
   };
-  py::class_<AtRest>(module, "Rest",
-                     "A scene at rest. str() has the whole report.")
+  define<AtRest>(module, "Rest", "A scene at rest. str() has the whole report.")
       .def_property_readonly("x", rows(&AtRest::x),
                              "Positions [m], shape (n, 3).")
       .def_property_readonly(
@@ -209,9 +218,9 @@ void define_values(py::module_& module) {
                     "The lowest, at most ten [Hz], rising.")
       .def("__str__", [](const AtRest& r) { return r.text; });
 
-  py::class_<Advice>(module, "Advice",
-                     "The cheapest run found that answers a scene's question. "
-                     "str() has the whole report.")
+  define<Advice>(module, "Advice",
+                 "The cheapest run found that answers a scene's question. "
+                 "str() has the whole report.")
       .def_readonly("refusal", &Advice::refusal,
                     "Why nothing is advised; empty: it is.")
       .def_property_readonly(
@@ -233,7 +242,7 @@ struct FromArrays : Simulation {
 };
 
 void define_simulations(py::module_& module) {
-  py::class_<Simulation>(module, "Scene", "A scene; or a Net.")
+  define<Simulation>(module, "Scene", "A scene; or a Net.")
       .def_property_readonly(
           "x", [](const Simulation& s) { return as_array(s.mesh().points); },
           "Positions at the start [m], shape (n, 3); a copy.")
@@ -300,7 +309,7 @@ void define_simulations(py::module_& module) {
            "Find the cheapest model that answers the scene's question to "
            "tolerance, in the unit of its measure; with this method only. "
            "Raises ValueError if the scene can't answer it.");
-  py::class_<FromArrays, Simulation>(
+  define<FromArrays, Simulation>(
       module, "Net",
       "A net of point masses and springs.\n\n"
       "x: positions [m], (n, 3). edges: pairs of nodes, (e, 2). k: stiffness "
@@ -330,6 +339,7 @@ void define_simulations(py::module_& module) {
 PYBIND11_MODULE(mass_spring, module) {
   using namespace lab;
   module.doc() = "Mass-spring cloth: nets, scenes, methods, advice.";
+  module.attr("__version__") = version;
   lanes::cpu = lanes::fastest_cpu();
   // The threads of OpenMP are not there after a fork.
   pthread_atfork(nullptr, nullptr, [] { Sweep::set_threads(1); });
@@ -338,9 +348,9 @@ PYBIND11_MODULE(mass_spring, module) {
   define_simulations(module);
   module.def(
       "scene",
-      [](const std::string& file) {
+      [](const std::filesystem::path& file) {
         Simulation s =
-            without_gil([&] { return Simulation(load_model(file)); });
+            without_gil([&] { return Simulation(load_model(file.string())); });
         read_changes(s.model().at);
         return s;
       },

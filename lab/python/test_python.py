@@ -26,6 +26,11 @@ def oscillator(**changes):
     return mass_spring.Net(PAIR, [[0, 1]], **given)
 
 
+def test_the_version_is_that_of_the_changelog():
+    text = (root / "docs/CHANGELOG.md").read_text("utf-8")
+    assert f"\n## {mass_spring.__version__}\n" in text
+
+
 def test_positions_are_those_of_an_oscillator():
     r = oscillator().run("pefrl", 2.0, 0.001, every=0.5)
     assert r.t == pytest.approx([0, 0.5, 1, 1.5, 2])
@@ -106,7 +111,7 @@ def test_rest_names_what_does_not_stay_and_refuses_what_moves():
     with pytest.raises(ValueError, match="^rest cannot be that of moving pins"):
         curtain.rest()
     with pytest.raises(ValueError, match=": nodes is missing: expected files"):
-        mass_spring.scene(str(root / "data/scenes/tear.toml"))
+        mass_spring.scene(root / "data/scenes/tear.toml")
 
 
 def test_scene_runs_as_the_program_does():

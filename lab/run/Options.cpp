@@ -18,6 +18,7 @@
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "lab/fast/Lanes.hpp"
+#include "lab/fast/Version.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/scenes/Fields.hpp"
@@ -30,8 +31,6 @@
 
 namespace lab {
 namespace {
-
-constexpr const char* version = "2.0.0";
 
 constexpr const char* head =
     R"(Simulates a cloth of masses and springs from mesh files or a scene.
