@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -93,27 +92,10 @@ struct Result {
 };
 
 /** A scene at rest. */
-struct AtRest : Rest {
-  bool stable;
-  std::vector<unsigned> growing, loose;
-  std::vector<double> frequencies;
-  std::vector<std::tuple<std::string, std::array<double, 3>>> pins;
+struct AtRest : RestReport {
   std::vector<Point> x, force;  // of each node of the mesh
-  std::string text;
 
-  explicit AtRest(Scene s) : AtRest(s, RestReport(s)) {}
-
- private:
-  AtRest(const Scene& s, const RestReport& r)
-      : Rest(r.rest),
-        stable(r.stable()),
-        growing(r.growing_nodes()),
-        loose(r.loose_nodes()),
-        frequencies(r.frequencies()),
-        x(State(s).x),
-        text(r.text()) {
-    for (const auto& [name, f] : r.pins)
-      pins.push_back({name, {f.x, f.y, f.z}});
+  explicit AtRest(Scene s) : RestReport(s), x(State(s).x) {
     for (Node n : s.cloth().nodes()) force.push_back(s.force()(n, 0));
   }
 };

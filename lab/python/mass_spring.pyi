@@ -11,101 +11,63 @@ from numpy import float64
 
 __version__: Final[str]
 
-class _Given:
-    """What this module makes, and nobody else."""
-    def __init__(self, *args: NoReturn, **kwargs: NoReturn) -> None: ...
+class Method:
+    def __init__(self, *nobody: NoReturn) -> None:
+        self.name: Final[str]
+        self.order: Final[int]
+        self.forces: Final[int]
+        self.limit: Final[float]
+        self.good_for: Final[str]
+        self.fails_when: Final[str]
+        self.source: Final[str]
 
-class Method(_Given):
-    @property
-    def name(self) -> str: ...
-    @property
-    def order(self) -> int: ...
-    @property
-    def forces(self) -> int: ...
-    @property
-    def limit(self) -> float: ...
-    @property
-    def good_for(self) -> str: ...
-    @property
-    def fails_when(self) -> str: ...
-    @property
-    def source(self) -> str: ...
+class Failure:
+    def __init__(self, *nobody: NoReturn) -> None:
+        self.kind: Final[str]
+        self.step: Final[int]
+        self.time: Final[float]
+        self.dt: Final[float]
+        self.node: Final[int | None]
+        self.cause: Final[str]
+        self.cure: Final[tuple[str, float] | None]
 
-class Failure(_Given):
-    @property
-    def kind(self) -> str: ...
-    @property
-    def step(self) -> int: ...
-    @property
-    def time(self) -> float: ...
-    @property
-    def dt(self) -> float: ...
-    @property
-    def node(self) -> int | None: ...
-    @property
-    def cause(self) -> str: ...
-    @property
-    def cure(self) -> tuple[str, float] | None: ...
+class Result:
+    def __init__(self, *nobody: NoReturn) -> None:
+        self.t: Final[NDArray[float64]]
+        self.x: Final[NDArray[float64]]
+        self.v: Final[NDArray[float64]]
+        self.energy: Final[NDArray[float64]]
+        self.work: Final[int]
+        self.steps: Final[int]
+        self.status: Final[int]
+        self.why: Final[Failure | None]
 
-class Result(_Given):
-    @property
-    def t(self) -> NDArray[float64]: ...
-    @property
-    def x(self) -> NDArray[float64]: ...
-    @property
-    def v(self) -> NDArray[float64]: ...
-    @property
-    def energy(self) -> NDArray[float64]: ...
-    @property
-    def work(self) -> int: ...
-    @property
-    def steps(self) -> int: ...
-    @property
-    def status(self) -> int: ...
-    @property
-    def why(self) -> Failure | None: ...
+class Rest:
+    def __init__(self, *nobody: NoReturn) -> None:
+        self.x: Final[NDArray[float64]]
+        self.force: Final[NDArray[float64]]
+        self.pins: Final[list[tuple[str, list[float]]]]
+        self.residual: Final[float]
+        self.load: Final[float]
+        self.factors: Final[int]
+        self.stable: Final[bool]
+        self.growing: Final[list[int]]
+        self.loose: Final[list[int]]
+        self.frequencies: Final[list[float]]
 
-class Rest(_Given):
-    @property
-    def x(self) -> NDArray[float64]: ...
-    @property
-    def force(self) -> NDArray[float64]: ...
-    @property
-    def pins(self) -> list[tuple[str, list[float]]]: ...
-    @property
-    def residual(self) -> float: ...
-    @property
-    def load(self) -> float: ...
-    @property
-    def factors(self) -> int: ...
-    @property
-    def stable(self) -> bool: ...
-    @property
-    def growing(self) -> list[int]: ...
-    @property
-    def loose(self) -> list[int]: ...
-    @property
-    def frequencies(self) -> list[float]: ...
+class Advice:
+    def __init__(self, *nobody: NoReturn) -> None:
+        self.refusal: Final[str]
+        self.method: Final[str]
+        self.dt: Final[float]
+        self.error: Final[float]
+        self.tolerance: Final[float]
+        self.work: Final[float]
+        self.scene: Final[Scene]
 
-class Advice(_Given):
-    @property
-    def refusal(self) -> str: ...
-    @property
-    def method(self) -> str: ...
-    @property
-    def dt(self) -> float: ...
-    @property
-    def error(self) -> float: ...
-    @property
-    def tolerance(self) -> float: ...
-    @property
-    def work(self) -> float: ...
-    @property
-    def scene(self) -> Scene: ...
-
-class Scene(_Given):
-    @property
-    def x(self) -> NDArray[float64]: ...
+class Scene:
+    def __init__(self, *nobody: NoReturn) -> None:
+        self.x: Final[NDArray[float64]]
     def limit(self, method: str) -> float: ...
     def run(self, method: str = "", t_end: float | None = None,
             dt: float | str | None = None, *, every: float | None = None,

@@ -4,12 +4,14 @@
  * docs/python.md its examples. */
 #include <pthread.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <optional>
 #include <regex>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -201,22 +203,31 @@ void define_values(py::module_& module) {
           "force", rows(&AtRest::force),
           "The force on each node [N], shape (n, 3): what pins and obstacles "
           "carry, elsewhere the residual.")
-      .def_readonly("pins", &AtRest::pins,
-                    "The force that each pin carries [N]: (name, [x, y, z]).")
+      .def_property_readonly(
+          "pins",
+          [](const AtRest& r) {
+            std::vector<std::tuple<std::string, std::array<double, 3>>> all;
+            for (const auto& [pin, f] : r.pins)
+              all.push_back({pin, {f.x, f.y, f.z}});
+            return all;
+          },
+          "The force that each pin carries [N]: (name, [x, y, z]).")
       .def_readonly("residual", &AtRest::residual,
                     "What is left of all forces [N].")
       .def_readonly("load", &AtRest::load,
                     "The weight, or else the largest force at first [N].")
       .def_readonly("factors", &AtRest::factors, "Cholesky factors it took.")
-      .def_readonly("stable", &AtRest::stable,
-                    "Does the energy rise whichever way nodes may move?")
-      .def_readonly("growing", &AtRest::growing,
-                    "Nodes that leave this state, if it is unstable.")
-      .def_readonly("loose", &AtRest::loose,
-                    "Nodes that no energy holds, which may move freely.")
-      .def_readonly("frequencies", &AtRest::frequencies,
-                    "The lowest, at most ten [Hz], rising.")
-      .def("__str__", [](const AtRest& r) { return r.text; });
+      .def_property_readonly(
+          "stable", &AtRest::stable,
+          "Does the energy rise whichever way nodes may move?")
+      .def_property_readonly("growing", &AtRest::growing_nodes,
+                             "Nodes that leave this state, if it is unstable.")
+      .def_property_readonly(
+          "loose", &AtRest::loose_nodes,
+          "Nodes that no energy holds, which may move freely.")
+      .def_property_readonly("frequencies", &AtRest::frequencies,
+                             "The lowest, at most ten [Hz], rising.")
+      .def("__str__", &AtRest::text);
 
   define<Advice>(module, "Advice",
                  "The cheapest run found that answers a scene's question. "

@@ -48,7 +48,7 @@ void check_has_rest(const Model& m) {
          "combined with --self-collision: it lets a cloth pass through itself");
 }
 
-RestReport::RestReport(Scene& scene) : rest(*scene.rest()) {
+RestReport::RestReport(Scene& scene) : Rest(*scene.rest()) {
   const Model& m = scene.model();
   const Cloth& g = scene.cloth();
   Equilibrium here(m, scene.cloth(), scene.force(), scene.watched());
@@ -107,10 +107,10 @@ std::vector<double> RestReport::frequencies() const {
 }
 
 std::string RestReport::text() const {
-  std::string text =
-      "at rest: " + short_text(rest.residual) + " N are left of " +
-      short_text(rest.load) + " N, after " +
-      CME212::count_of(std::size_t(rest.factors), "Cholesky factor") + '\n';
+  std::string text = "at rest: " + short_text(residual) + " N are left of " +
+                     short_text(load) + " N, after " +
+                     CME212::count_of(std::size_t(factors), "Cholesky factor") +
+                     '\n';
   if (growing > 0)
     text += "unstable: a motion of " + in_words(growing_nodes()) +
             " grows e times every " +
@@ -118,15 +118,15 @@ std::string RestReport::text() const {
   if (loose > 0)
     text += "no energy holds " + in_words(loose_nodes()) +
             ", which may move freely" +
-            (rest.shift > 0 ? ": a shift of " + short_text(rest.shift) +
-                                  " 1/s^2 times the mass settled them\n"
-                            : "\n");
+            (shift > 0 ? ": a shift of " + short_text(shift) +
+                             " 1/s^2 times the mass settled them\n"
+                       : "\n");
   if (stable() && !modes.empty())
     text += "stable: the smallest eigenvalue is " +
             short_text(modes[0].square) + " 1/s^2\n";
-  for (const Pin& pin : pins)
-    text += pin.name + ": " + short_text(norm(pin.force)) + " N, " +
-            lab::short_text(pin.force) + '\n';
+  for (const auto& [name, force] : pins)
+    text += name + ": " + short_text(norm(force)) + " N, " +
+            lab::short_text(force) + '\n';
   const std::vector<double> all = frequencies();
   if (!all.empty()) text += "lowest frequencies [Hz]:";
   for (double f : all) text += ' ' + short_text(f);

@@ -3,6 +3,7 @@
  * What ./cloth --rest says of a scene that was put to rest. */
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lab/stepping/Scene.hpp"
@@ -13,17 +14,12 @@ namespace lab {
 void check_has_rest(const Model& m);
 
 /** How far a scene is at rest, whether it stays there, what its pins carry. */
-struct RestReport {
-  Rest rest;
+struct RestReport : Rest {
   /** The ten lowest, or all; first those that grow, then those that no energy
    * holds: at least one of these, and the scene is not stable. */
   std::vector<Mode> modes;
-  std::size_t growing = 0, loose = 0;  ///< number of such modes
-  struct Pin {
-    std::string name;
-    Point force;  ///< that it has to hold [N]
-  };
-  std::vector<Pin> pins;
+  std::size_t growing = 0, loose = 0;               ///< number of such modes
+  std::vector<std::pair<std::string, Point>> pins;  ///< what each holds [N]
 
   /** @pre scene.rest(), no node was removed
    * Throws Interrupted.  Complexity: Equilibrium::modes(10) */
