@@ -9,18 +9,21 @@ from setuptools.command.build_ext import build_ext
 
 
 class Make(build_ext):
-    """Builds by make; its stub goes beside the module."""
+    """Builds the package by make."""
 
     def run(self) -> None:
+        if self.inplace:
+            sys.exit("mass_spring is not installed by -e: after make python, "
+                     "PYTHONPATH=build/python finds it")
         subprocess.run(["make", "-j2", "python", f"PYTHON={sys.executable}"],
                        check=True)
-        folder = pathlib.Path(self.build_lib)
-        if self.inplace:
-            folder = pathlib.Path(".")
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in pathlib.Path("build/python").glob("mass_spring*"):
-            shutil.copy(file, folder)
+        shutil.copytree("build/python/mass_spring",
+                        pathlib.Path(self.build_lib, "mass_spring"),
+                        dirs_exist_ok=True)
 
 
-setup(ext_modules=[Extension("mass_spring", [])],
+version = subprocess.run(["make", "-s", "python-version"], check=True,
+                         capture_output=True, text=True).stdout.strip()
+setup(version=version,
+      ext_modules=[Extension("mass_spring.__init__", [])],
       py_modules=[], packages=[], cmdclass={"build_ext": Make})

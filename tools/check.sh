@@ -297,8 +297,9 @@ python_module() {
   "$python" -c 'import numpy, scipy, matplotlib, pytest' 2>/dev/null &&
     [ -f /usr/include/pybind11/pybind11.h ] ||
     { echo "skipped: the module for Python: make python-deps"; return 0; }
-  in_folder . python &&
-    PYTHONPATH=build/check/python "$python" -m pytest -q -p no:cacheprovider lab/python
+  export PYTHONPATH=build/check/python MYPYPATH=build/check/python
+  in_folder . python && "$python" -m pytest -q -p no:cacheprovider lab/python &&
+    { ! command -v stubtest >/dev/null || "$python" -m mypy.stubtest mass_spring; }
 }
 # The site: its size, links, width on a phone, figures that move.
 site() {

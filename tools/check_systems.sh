@@ -26,6 +26,9 @@ commands=(
   "make deps && make test_nodes test_edges && ./test_nodes && ./test_edges"
   "make cloth"
   "./cloth --config data/scenes/curtain.toml --headless --t-end 0.1"
+  "make python-deps && python3 -m venv --system-site-packages build/venv"
+  "build/venv/bin/pip install --no-build-isolation ."
+  "cd /tmp && ~/mass_spring/build/venv/bin/python -m mypy.stubtest mass_spring"
 )
 # The log's words, beside status 0.
 expected() {

@@ -19,8 +19,9 @@ packages() {
     check)  echo "clang clang-format libclang-rt-dev libomp-dev libspectra-dev" \
                  "librapidcheck-dev libbenchmark-dev xvfb xauth xdotool" \
                  "shellcheck pyflakes3 mypy" ;;
-    python) echo "python3-numpy python3-dev pybind11-dev python3-pytest" \
-                 "python3-scipy python3-setuptools python3-matplotlib" ;;
+    python) echo "python3-numpy python3-dev python3-pybind11 python3-pytest" \
+                 "python3-scipy python3-setuptools python3-matplotlib mypy" \
+                 "python3-build python3-pip python3-venv python3-wheel" ;;
     peers)  echo "libsundials-dev libboost-dev libgsl-dev" ;;
     grade)  echo "g++ git make python3 libseccomp-dev"
             python3 -c 'import tomllib' 2>/dev/null || echo "python3-tomli" ;;

@@ -19,14 +19,14 @@ namespace py = pybind11;
 template <typename T>
 using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-/** @a values as an array of @a shape that owns them: nothing is copied. */
-template <typename T>
-py::array as_array(std::vector<T> values, std::vector<py::ssize_t> shape) {
-  auto* kept = new std::vector<T>(std::move(values));
-  py::capsule owner(kept,
-                    [](void* p) { delete static_cast<std::vector<T>*>(p); });
-  return py::array_t<double>(
-      std::move(shape), reinterpret_cast<const double*>(kept->data()), owner);
+/** @a rows as an array of shape (n, 3) that owns them: nothing is copied. */
+inline py::array as_array(std::vector<Point> rows) {
+  auto* kept = new std::vector<Point>(std::move(rows));
+  py::capsule owner(
+      kept, [](void* p) { delete static_cast<std::vector<Point>*>(p); });
+  return py::array_t<double>({py::ssize_t(kept->size()), py::ssize_t(3)},
+                             reinterpret_cast<const double*>(kept->data()),
+                             owner);
 }
 
 /** Throws a ValueError: "NAME is ..., expected ...". */

@@ -23,36 +23,27 @@ namespace py = pybind11;
 class CatchSignals {
  public:
   CatchSignals() {
-    const std::lock_guard lock(mutex());
-    if (count()++ > 0) return;
-    for (auto& [signal, action] : before()) sigaction(signal, nullptr, &action);
+    const std::lock_guard lock(mutex_);
+    if (count_++ > 0) return;
+    for (auto& [signal, action] : before_) sigaction(signal, nullptr, &action);
     catch_interrupts();
   }
   ~CatchSignals() {
-    const std::lock_guard lock(mutex());
-    if (--count() > 0) return;
+    const std::lock_guard lock(mutex_);
+    if (--count_ > 0) return;
     const int signal = interrupted();
     forget_interrupts();
-    for (auto& [one, action] : before()) sigaction(one, &action, nullptr);
+    for (auto& [one, action] : before_) sigaction(one, &action, nullptr);
     if (signal != 0) kill(getpid(), signal);
   }
   CatchSignals(const CatchSignals&) = delete;
   CatchSignals& operator=(const CatchSignals&) = delete;
 
  private:
-  static std::mutex& mutex() {
-    static std::mutex one;
-    return one;
-  }
-  static int& count() {
-    static int of_process = 0;
-    return of_process;
-  }
-  static std::array<std::pair<int, struct sigaction>, 3>& before() {
-    static std::array<std::pair<int, struct sigaction>, 3> of_process = {
-        {{SIGINT, {}}, {SIGTERM, {}}, {SIGHUP, {}}}};
-    return of_process;
-  }
+  static inline std::mutex mutex_;
+  static inline int count_ = 0;
+  static inline std::array<std::pair<int, struct sigaction>, 3> before_ = {
+      {{SIGINT, {}}, {SIGTERM, {}}, {SIGHUP, {}}}};
 };
 
 /** Call @a compute without the GIL. After a signal, which Python handles, this

@@ -4,29 +4,32 @@
  * docs/python.md its examples. */
 #include <pthread.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <regex>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "CME212/Util.hpp"
 #include "lab/advice/Advise.hpp"
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
-#include "lab/methods/Methods.hpp"
+#include "lab/fast/Version.hpp"
 #include "lab/python/Arrays.hpp"
 #include "lab/python/Signals.hpp"
-#include "lab/scenes/Fields.hpp"
+#include "lab/python/Simulation.hpp"
 #include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stepping/Changes.hpp"
-#include "lab/stepping/Settled.hpp"
 
 namespace lab {
 namespace {
@@ -35,174 +38,6 @@ namespace {
 std::string without_dashes(const std::string& message) {
   return std::regex_replace(message, std::regex("--([a-z])"), "$1");
 }
-
-const MethodEntry& method_called(const std::string& name) {
-  Model m;
-  set_field(m, "method", {name});
-  return *m.method;
-}
-
-/** Why a run failed, or is not the motion of its scene. */
-struct Why {
-  std::string kind;
-  long long step = 0;
-  double time = 0, dt = 0;
-  std::optional<long long> node;
-  std::string cause, text;
-  std::optional<std::pair<std::string, double>> cure;
-};
-
-/** Throws Interrupted. */
-std::optional<Why> why_failed(const Scene& s) {
-  Why w;
-  if (const auto& f = s.failure()) {
-    constexpr const char* kinds[] = {"start", "diverged", "refused"};
-    const Explanation e = s.explanation();
-    w.kind = kinds[int(f->kind)], w.cause = e.cause, w.text = e.text();
-    w.step = f->step, w.time = f->time, w.dt = f->dt;
-    if (f->place.index >= 0) w.node = f->place.index;
-  } else if (const Verdict* wrong = s.wrong()) {  // as ./cloth ends
-    w.kind = "energy", w.cause = wrong->wrong_text();
-    w.text = w.cause + "; " + s.remedy();
-    w.step = s.steps(), w.time = s.time(), w.dt = s.dt();
-  } else {
-    return std::nullopt;
-  }
-  if (const auto& cure = s.diagnosis().cure)
-    w.cure = {std::string(cure->method.info.name), cure->dt};
-  return w;
-}
-
-/** A state of a run. The rows are the nodes of its start; a node that was
- * removed has no position: NaN. */
-struct State {
-  double t, energy;
-  std::vector<Point> x, v;
-
-  explicit State(const Scene& scene)
-      : t(scene.time()), energy(scene.energy().total()) {
-    const auto a = arrays(scene.cloth());
-    const Point none(std::numeric_limits<double>::quiet_NaN());
-    for (unsigned id : scene.mesh().ids) {
-      const bool there = a.node_in_use(id);
-      x.push_back(there ? a.positions()[id] : none);
-      v.push_back(there ? a.node_values()[id].vel : none);
-    }
-  }
-};
-
-/** The states of a run, one every so many seconds. */
-struct Result {
-  std::size_t nodes = 0;
-  std::vector<double> t, energy;
-  std::vector<Point> x, v;
-  long long steps = 0, evaluations = 0;
-  std::optional<Why> why;
-
-  void add(const State& s) {
-    nodes = s.x.size();
-    t.push_back(s.t), energy.push_back(s.energy);
-    x.insert(x.end(), s.x.begin(), s.x.end());
-    v.insert(v.end(), s.v.begin(), s.v.end());
-  }
-};
-
-/** A scene, or a net: what a run starts from. */
-class Simulation {
- public:
-  explicit Simulation(Model m) : model_(std::move(m)), mesh_(mesh_of(model_)) {}
-  Simulation(Model m, Net mesh)
-      : model_(std::move(m)), mesh_(std::move(mesh)), is_of_arrays_(true) {}
-
-  const Model& model() const { return model_; }
-  const Net& mesh() const { return mesh_; }
-  bool is_of_arrays() const { return is_of_arrays_; }
-
-  double limit(const std::string& method) const {
-    return Scene(model_, mesh_, TimeStep(), method_called(method))
-        .least_limit()
-        .limit;
-  }
-
-  Result run(const std::string& method, std::optional<double> t_end,
-             const std::string& dt, std::optional<double> every,
-             std::optional<double> atol, std::vector<Point> x0,
-             std::vector<Point> v0) const {
-    Model m = model_;
-    Net mesh = x0.empty() ? mesh_ : moved_to(std::move(x0));
-    if (!v0.empty()) mesh.velocities = std::move(v0);
-    if (!method.empty()) set_field(m, "method", {method});
-    if (t_end) set_field(m, "t-end", {CME212::exact_text(*t_end)});
-    const double between = every.value_or(m.t_end);
-    if (!(between > 0) && m.t_end > 0)
-      throw SceneError("every", CME212::short_text(between),
-                       "a time [s] above 0");
-    if (dt == "auto" && m.method->info.adaptive)
-      m.step = {.dt = std::min(between, m.t_end)};
-    else if (!dt.empty())
-      set_field(m, "dt", {dt});
-    if (atol && !(*atol > 0 && std::isfinite(*atol)))
-      throw SceneError("atol", CME212::short_text(*atol),
-                       "a length [m] above 0");
-    if (atol) m.step.tolerance = *atol;
-    check_step(m);
-    Scene scene(model_, mesh, m.step, *m.method);
-    scene.watch(m.t_end);
-    Result r;
-    Settled<State> states(scene.stepper(), [&r](const State& s) { r.add(s); });
-    states.add(State(scene));
-    // Signals are looked for at least every 1e7 springs' forces.
-    const double at_once = 1e7 / (double(scene.cloth().num_edges()) + 1);
-    while (!scene.done(m.t_end)) {
-      end_if_interrupted();
-      const double last = states.back() ? states.back()->t : r.t.back();
-      const double next = between * (std::floor(last / between + 1e-6) + 1);
-      const double left = std::ceil((next - scene.time()) / scene.dt() - 1e-6);
-      const int most = int(std::clamp(std::min(left, at_once), 1.,
-                                      double(Stepper::guard_interval)));
-      scene.steps_at_once(most, m.t_end);
-      const bool due = scene.time() >= next - 1e-6 * scene.dt();
-      if ((due || scene.done(m.t_end)) && scene.check())
-        states.add(State(scene));
-    }
-    states.finish();
-    r.steps = scene.steps(), r.evaluations = scene.evaluations();
-    r.why = why_failed(scene);
-    return r;
-  }
-
-  /** The force on each node [N] in positions @a x [m] with velocities @a v. */
-  std::vector<Point> force(std::span<const Point> x, std::span<const Point> v,
-                           double t) {
-    if (!at_hand_)
-      at_hand_ =
-          std::make_shared<Scene>(model_, mesh_, TimeStep(), *model_.method);
-    Cloth& g = at_hand_->cloth();
-    std::vector<Point> f(x.size());
-    for (Node n : g.nodes())
-      n.position() = x[n.index()], n.value().vel = v[n.index()];
-    for (Node n : g.nodes()) f[n.index()] = at_hand_->force()(n, t);
-    return f;
-  }
-
- private:
-  /** The net with its nodes at @a x, and its springs as long as before. */
-  Net moved_to(std::vector<Point> x) const {
-    if (!is_of_arrays_)
-      throw SceneError("x0", "of a scene from a file",
-                       "a Net: pins of a scene stand by their places");
-    Net net = mesh_;
-    for (Spring& s : net.springs)
-      if (s.L < 0) s.L = norm(net.points[s.i] - net.points[s.j]);
-    net.points = std::move(x);
-    return net;
-  }
-
-  Model model_;
-  Net mesh_;
-  bool is_of_arrays_ = false;
-  std::shared_ptr<Scene> at_hand_;  // of force()
-};
 
 /** The net that arrays describe: mass_spring.pyi has their shapes.
  * Throws py::value_error "ARRAY[INDEX] is ..., expected ..." */
@@ -273,44 +108,52 @@ Advice advise_on(const Simulation& s, std::optional<double> tolerance,
 
 // ------------------------------------------------------------------ The module
 
-/** Errors of the laboratory are ValueErrors with its sentence. */
+/** Errors of the laboratory are ValueErrors or RuntimeErrors with its sentence.
+ */
 void translate_errors() {
   py::register_exception_translator([](std::exception_ptr p) {
+    const auto raise = [](PyObject* type, const std::exception& e) {
+      PyErr_SetString(type, without_dashes(e.what()).c_str());
+    };
     try {
       std::rethrow_exception(std::move(p));
+    } catch (const py::builtin_exception&) {
+      throw;
     } catch (const SceneError& e) {
-      PyErr_SetString(PyExc_ValueError, without_dashes(e.what()).c_str());
+      raise(PyExc_ValueError, e);
     } catch (const SceneFileError& e) {
-      PyErr_SetString(PyExc_ValueError, e.what());
+      raise(PyExc_ValueError, e);
     } catch (const InputError& e) {
-      PyErr_SetString(PyExc_ValueError, e.what());
+      raise(PyExc_ValueError, e);
+    } catch (const std::runtime_error& e) {
+      raise(PyExc_RuntimeError, e);
     }
   });
 }
 
-void define_values(py::module_& module) {
-  using M = MethodEntry;
-  py::class_<M>(module, "Method", "A method: what it declares of itself.")
-      .def_property_readonly("name", [](const M& m) { return m.info.name; })
-      .def_property_readonly(
-          "order", [](const M& m) { return m.info.order; },
-          "The error of a run goes as dt**order.")
-      .def_property_readonly(
-          "forces", [](const M& m) { return m.info.sweeps; },
-          "Force evaluations a step, without those in linear solves.")
-      .def_property_readonly(
-          "limit", [](const M& m) { return m.info.limit; },
-          "Stable while dt * omega < limit; inf: with any step.")
-      .def_property_readonly("good_for",
-                             [](const M& m) { return m.info.good_for; })
-      .def_property_readonly("fails_when",
-                             [](const M& m) { return m.info.fails_when; })
-      .def_property_readonly("source", [](const M& m) { return m.info.source; })
-      .def("__repr__", [](const M& m) {
-        return "<Method " + std::string(m.info.name) + '>';
-      });
+/** A class whose metaclass is that of Python's own. */
+template <typename... T>
+py::class_<T...> define(py::module_& module, const char* name,
+                        const char* meaning) {
+  return {module, name, meaning, py::metaclass((PyObject*)&PyType_Type)};
+}
 
-  py::class_<Why>(module, "Failure", "How and why a run failed.")
+void define_values(py::module_& module) {
+  using M = MethodInfo;
+  define<M>(module, "Method", "A method: what it declares of itself.")
+      .def_readonly("name", &M::name)
+      .def_readonly("order", &M::order, "The error of a run goes as dt**order.")
+      .def_readonly("forces", &M::sweeps,
+                    "Force evaluations a step, without those in linear solves.")
+      .def_readonly("limit", &M::limit,
+                    "Stable while dt * omega < limit; inf: with any step.")
+      .def_readonly("good_for", &M::good_for)
+      .def_readonly("fails_when", &M::fails_when)
+      .def_readonly("source", &M::source)
+      .def("__repr__",
+           [](const M& m) { return "<Method " + std::string(m.name) + '>'; });
+
+  define<Why>(module, "Failure", "How and why a run failed.")
       .def_readonly("kind", &Why::kind,
                     "'start', 'diverged', 'refused'; or 'energy': the method "
                     "has added energy, so this is not the scene's motion.")
@@ -337,7 +180,7 @@ void define_values(py::module_& module) {
           shape, reinterpret_cast<const double*>((r.*values).data()), self);
     };
   };
-  py::class_<Result>(module, "Result", "The states of a run: k of n nodes.")
+  define<Result>(module, "Result", "The states of a run: k of n nodes.")
       .def_property_readonly("t", array(&Result::t, false),
                              "Times [s], shape (k,).")
       .def_property_readonly(
@@ -356,9 +199,45 @@ void define_values(py::module_& module) {
           "status", [](const Result& r) { return r.why ? 3 : 0; },
           "0: done; 3: the run failed, and why says how.");
 
-  py::class_<Advice>(module, "Advice",
-                     "The cheapest run found that answers a scene's question. "
-                     "str() has the whole report.")
+  const auto rows = [](std::vector<Point> AtRest::*points) {
+    return [=](const AtRest& r) { return as_array(r.*points); };
+  };
+  define<AtRest>(module, "Rest", "A scene at rest. str() has the whole report.")
+      .def_property_readonly("x", rows(&AtRest::x),
+                             "Positions [m], shape (n, 3).")
+      .def_property_readonly(
+          "force", rows(&AtRest::force),
+          "The force on each node [N], shape (n, 3): what pins and obstacles "
+          "carry, elsewhere the residual.")
+      .def_property_readonly(
+          "pins",
+          [](const AtRest& r) {
+            std::vector<std::tuple<std::string, std::array<double, 3>>> all;
+            for (const auto& [pin, f] : r.pins)
+              all.push_back({pin, {f.x, f.y, f.z}});
+            return all;
+          },
+          "The force that each pin carries [N]: (name, [x, y, z]).")
+      .def_readonly("residual", &AtRest::residual,
+                    "What is left of all forces [N].")
+      .def_readonly("load", &AtRest::load,
+                    "The weight, or else the largest force at first [N].")
+      .def_readonly("factors", &AtRest::factors, "Cholesky factors it took.")
+      .def_property_readonly(
+          "stable", &AtRest::stable,
+          "Does the energy rise whichever way nodes may move?")
+      .def_property_readonly("growing", &AtRest::growing_nodes,
+                             "Nodes that leave this state, if it is unstable.")
+      .def_property_readonly(
+          "loose", &AtRest::loose_nodes,
+          "Nodes that no energy holds, which may move freely.")
+      .def_property_readonly("frequencies", &AtRest::frequencies,
+                             "The lowest, at most ten [Hz], rising.")
+      .def("__str__", &AtRest::text);
+
+  define<Advice>(module, "Advice",
+                 "The cheapest run found that answers a scene's question. "
+                 "str() has the whole report.")
       .def_readonly("refusal", &Advice::refusal,
                     "Why nothing is advised; empty: it is.")
       .def_property_readonly(
@@ -380,13 +259,9 @@ struct FromArrays : Simulation {
 };
 
 void define_simulations(py::module_& module) {
-  const auto array = [](std::vector<Point> points) {
-    const auto n = py::ssize_t(points.size());
-    return as_array(std::move(points), {n, 3});
-  };
-  py::class_<Simulation>(module, "Scene", "A scene; or a Net.")
+  define<Simulation>(module, "Scene", "A scene; or a Net.")
       .def_property_readonly(
-          "x", [=](const Simulation& s) { return array(s.mesh().points); },
+          "x", [](const Simulation& s) { return as_array(s.mesh().points); },
           "Positions at the start [m], shape (n, 3); a copy.")
       .def("limit", &Simulation::limit, py::arg("method"),
            "The largest step [s] with which a method is stable; inf: any is, "
@@ -425,11 +300,22 @@ void define_simulations(py::module_& module) {
           "argument that can't be used, KeyboardInterrupt by Ctrl-C. Releases "
           "the GIL.")
       .def(
+          "rest",
+          [](const Simulation& s) {
+            return without_gil([&] { return s.rest(); });
+          },
+          "The Rest at which the cloth can hang for ever, by Newton's method "
+          "from the start.\n\n"
+          "Raises ValueError for what has no such state: moving pins, tearing, "
+          "self-collision, changes in time; RuntimeError if nothing holds a "
+          "node, or no rest is found; KeyboardInterrupt by Ctrl-C. Releases "
+          "the GIL.")
+      .def(
           "force",
-          [=](Simulation& s, const py::object& x, const py::object& v,
-              double t) {
+          [](Simulation& s, const py::object& x, const py::object& v,
+             double t) {
             const auto n = py::ssize_t(s.mesh().points.size());
-            return array(
+            return as_array(
                 s.force(points_of(x, "x", n), points_of(v, "v", n), t));
           },
           py::arg("x"), py::arg("v"), py::arg("t") = 0.,
@@ -440,7 +326,7 @@ void define_simulations(py::module_& module) {
            "Find the cheapest model that answers the scene's question to "
            "tolerance, in the unit of its measure; with this method only. "
            "Raises ValueError if the scene can't answer it.");
-  py::class_<FromArrays, Simulation>(
+  define<FromArrays, Simulation>(
       module, "Net",
       "A net of point masses and springs.\n\n"
       "x: positions [m], (n, 3). edges: pairs of nodes, (e, 2). k: stiffness "
@@ -471,6 +357,7 @@ void define_simulations(py::module_& module) {
 PYBIND11_MODULE(mass_spring, module) {
   using namespace lab;
   module.doc() = "Mass-spring cloth: nets, scenes, methods, advice.";
+  module.attr("__version__") = version;
   lanes::cpu = lanes::fastest_cpu();
   // The threads of OpenMP are not there after a fork.
   pthread_atfork(nullptr, nullptr, [] { Sweep::set_threads(1); });
@@ -479,15 +366,19 @@ PYBIND11_MODULE(mass_spring, module) {
   define_simulations(module);
   module.def(
       "scene",
-      [](const std::string& file) {
+      [](const std::filesystem::path& file) {
         Simulation s =
-            without_gil([&] { return Simulation(load_model(file)); });
+            without_gil([&] { return Simulation(load_model(file.string())); });
         read_changes(s.model().at);
         return s;
       },
       py::arg("file"), "The Scene in a scene file: see lab/scenes/README.md.");
   module.def(
       "methods",
-      [] { return std::vector<MethodEntry>(methods.begin(), methods.end()); },
+      [] {
+        std::vector<MethodInfo> all;
+        for (const MethodEntry& m : methods) all.push_back(m.info);
+        return all;
+      },
       "All methods that run() takes.");
 }

@@ -26,6 +26,11 @@ def oscillator(**changes):
     return mass_spring.Net(PAIR, [[0, 1]], **given)
 
 
+def test_the_version_is_that_of_the_changelog():
+    text = (root / "docs/CHANGELOG.md").read_text("utf-8")
+    assert f"\n## {mass_spring.__version__}\n" in text
+
+
 def test_positions_are_those_of_an_oscillator():
     r = oscillator().run("pefrl", 2.0, 0.001, every=0.5)
     assert r.t == pytest.approx([0, 0.5, 1, 1.5, 2])
@@ -72,6 +77,34 @@ def test_force_is_that_of_springs_weight_and_drag():
     net = oscillator(gravity=2.0, drag=0.5)
     f = net.force([[0.0, 0, 0], [0, 0, 2]], [[0.0, 0, 0], [4, 0, 0]])
     assert f == pytest.approx(np.array([[0, 0, 18 - 2], [-2, 0, -18 - 2]]))
+
+
+def test_rest_is_where_a_mass_hangs_with_its_frequencies():
+    r = oscillator(k=50, L=1, mass=2, gravity=10).rest()
+    assert r.x == pytest.approx(np.array([[0, 0, 0], [0, 0, -1.4]]), abs=1e-9)
+    assert r.residual <= 1e-10 * r.load and r.load == 20 and r.factors > 0
+    assert r.stable and (r.growing, r.loose) == ([], [])
+    assert r.frequencies == pytest.approx(
+        np.sqrt([10 / 1.4, 10 / 1.4, 25]) / (2 * np.pi))
+    assert r.pins == [("held by the net", pytest.approx([0, 0, -40], abs=1e-8))]
+    assert r.force == pytest.approx(
+        np.array([[0, 0, -40], [0, 0, 0]]), abs=1e-8)
+    assert "stable: the smallest eigenvalue is 7.14286 1/s^2" in str(r)
+
+
+def test_rest_names_what_does_not_stay_and_refuses_what_moves():
+    r = mass_spring.Net([[0, 0, 0], [0, 0, 1]], [[0, 1]], fixed=[0]).rest()
+    assert (r.stable, r.growing, r.loose) == (False, [1], [])
+    r = oscillator(L=1).rest()
+    assert (r.stable, r.growing, r.loose) == (False, [], [1])
+    with pytest.raises(RuntimeError, match="^no rest: nothing holds node 0, "
+                       "which falls without end$"):
+        oscillator(fixed=[], gravity=10).rest()
+    curtain = mass_spring.scene(str(root / "data/scenes/curtain.toml"))
+    with pytest.raises(ValueError, match="^rest cannot be that of moving pins"):
+        curtain.rest()
+    with pytest.raises(ValueError, match=": nodes is missing: expected files"):
+        mass_spring.scene(root / "data/scenes/tear.toml")
 
 
 def test_scene_runs_as_the_program_does():
@@ -141,6 +174,9 @@ def test_a_wrong_argument_of_a_run_is_named(arguments, message):
         oscillator().run(*arguments)
     with pytest.raises(ValueError, match="no/scene.toml"):
         mass_spring.scene("no/scene.toml")
+    for atol in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match="^atol"):
+            oscillator().run("rkn64", 1.0, "auto", atol=atol)
 
 
 def test_control_c_ends_a_run_that_lets_other_threads_work():
@@ -158,14 +194,12 @@ def test_examples_of_the_page(tmp_path, monkeypatch, capsys):
     for code in re.findall(r"```python\n(.*?)```", page, re.S):
         exec(code, names)
     said = capsys.readouterr().out
-    assert "stability limit" in said
-    assert (tmp_path / "work_precision.png").stat().st_size
+    assert "stability limit" in said and "stable: the smallest" in said
+    assert "order 2.00" in said
+    assert all((tmp_path / name).stat().st_size
+               for name in ("rest.png", "work_precision.png"))
     forces = dict(re.findall(r"(\S+) +(\d+) forces, error", said))
     assert int(forces["rkn64"]) < int(forces["RK45"])
-
-
-def hung(fixed):
-    return mass_spring.Net(PAIR, [[0, 1]], fixed=fixed)
 
 
 @pytest.mark.parametrize("fixed, held", [
@@ -173,39 +207,23 @@ def hung(fixed):
     ([False, False], []), ((), []), ([], []), (np.array([1], np.uint8), [1]),
     (np.array([0, 9, 1])[::2], [0, 1])])
 def test_nodes_are_numbers_or_a_mask(fixed, held):
-    x = hung(fixed).run("verlet", 0.1, 0.01).x
+    net = mass_spring.Net(PAIR, [[0, 1]], fixed=fixed)
+    x = net.run("verlet", 0.1, 0.01).x
     assert [i for i in (0, 1) if (x[0, i] == x[-1, i]).all()] == held
 
 
-@pytest.mark.parametrize("fixed", [
-    [True], [0.0], [1 + 0j], ["0"], [[0]], "0", None, [2], [-1], [np.nan], 0])
-def test_what_names_no_nodes_is_refused(fixed):
-    with pytest.raises((TypeError, ValueError), match="^fixed"):
-        hung(fixed)
-
-
-@pytest.mark.parametrize("name, value", [
-    ("k", "soft"), ("k", 1j), ("k", True), ("k", None), ("k", -1),
-    ("k", np.nan), ("L", [np.inf]),
-    ("L", ["a"]), ("mass", 0), ("mass", [1, 2, 3]),
-    ("mass", pathlib.Path(".")), ("v", [[0, 0]]), ("v", [[0, 0, 1j]] * 2),
-    ("drag", -1), ("drag", "x"), ("drag", np.inf), ("gravity", np.nan)])
-def test_other_numbers_are_refused_by_name(name, value):
-    with pytest.raises((TypeError, ValueError), match=name):
-        oscillator(**{name: value})
-
-
-@pytest.mark.parametrize("edges", [
-    [[0.0, 1.0]], [[True, False]], [["a", "b"]], [[0, 2]], [[0, 1, 1]], None])
-def test_edges_are_pairs_of_nodes(edges):
-    with pytest.raises((TypeError, ValueError), match="edges"):
-        mass_spring.Net(PAIR, edges)
-
-
-@pytest.mark.parametrize("atol", [0.0, -1.0, np.nan, np.inf])
-def test_bad_tolerances(atol):
-    with pytest.raises(ValueError, match="^atol"):
-        oscillator().run("rkn64", 1.0, "auto", atol=atol)
+@pytest.mark.parametrize("name, values", [
+    ("k", ["soft", 1j, True, None, np.nan]), ("L", [[np.inf], ["a"]]),
+    ("mass", [[1, 2, 3], pathlib.Path(".")]), ("v", [[[0, 0, 1j]] * 2]),
+    ("drag", [-1, "x", np.inf]), ("gravity", [np.nan]),
+    ("edges", [[[0.0, 1.0]], [[True, False]], [["a", "b"]], [[0, 1, 1]], None]),
+    ("fixed", [[True], [0.0], [1 + 0j], ["0"], [[0]], "0", None, [-1],
+               [np.nan], 0])])
+def test_what_can_not_be_used_is_refused_by_name(name, values):
+    for value in values:
+        given: dict[str, Any] = {"x": PAIR, "edges": [[0, 1]], name: value}
+        with pytest.raises((TypeError, ValueError), match="^" + name):
+            mass_spring.Net(**given)
 
 
 def test_a_run_goes_on_with_the_rest_lengths_of_the_net():

@@ -18,6 +18,7 @@
 #include "CME212/Util.hpp"
 #include "CME212/viewer/Image.hpp"
 #include "lab/fast/Lanes.hpp"
+#include "lab/fast/Version.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/scenes/Fields.hpp"
@@ -26,11 +27,10 @@
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stepping/Changes.hpp"
 #include "lab/stepping/Checkpoint.hpp"
+#include "lab/stepping/RestReport.hpp"
 
 namespace lab {
 namespace {
-
-constexpr const char* version = "2.0.0";
 
 constexpr const char* head =
     R"(Simulates a cloth of masses and springs from mesh files or a scene.
@@ -96,21 +96,11 @@ void begin_and_end_at_rest(Options& o) {
   const auto refuse = [](bool wrong, const std::string& what) {
     if (wrong) throw SceneError("rest", "cannot be " + what);
   };
-  const auto moves = [](const auto& part) { return part.motion.moves(); };
   refuse(o.asks_advice() || !o.restart.empty() || !o.checkpoint.empty() ||
              !o.video.empty() || o.window,
          "combined with --advise, --assess, --auto, --restart, --checkpoint, "
          "--record or --window: it makes no run");
-  refuse(!m.at.empty(), "combined with --at: it is a state at no time");
-  refuse(std::ranges::any_of(m.pins, moves) ||
-             std::ranges::any_of(m.planes, moves) ||
-             std::ranges::any_of(m.spheres, moves),
-         "that of moving pins or obstacles: give them no velocity");
-  refuse(!m.tears.empty() || m.tear_strain,
-         "that of a cloth that tears, whose rest depends on its motion: a mesh "
-         "alone is the scene of the assignment, so name its pins");
-  refuse(m.self_collision.has_value(),
-         "combined with --self-collision: it lets a cloth pass through itself");
+  check_has_rest(m);
   refuse(m.measure.over_time(),
          "asked for a measure over time: expected one of a state");
   m.from_rest = true, m.t_end = 0, m.step = {};

@@ -32,7 +32,6 @@
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
-#include "lab/run/AtRest.hpp"
 #include "lab/run/Film.hpp"
 #include "lab/run/Options.hpp"
 #include "lab/run/Progress.hpp"
@@ -42,6 +41,7 @@
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/SceneFile.hpp"
 #include "lab/stepping/Accuracy.hpp"
+#include "lab/stepping/RestReport.hpp"
 #include "lab/stepping/Trial.hpp"
 #include "lab/viewer/Screen.hpp"
 
@@ -210,7 +210,7 @@ int run(Options o) {
   if (!o.rest)
     run.announce();
   else if (!o.quiet)
-    std::cout << in_words(*scene.rest(), scene);
+    std::cout << RestReport(scene).text();
   if (window) {
     window->show_strain(o.strain);
     window->set_paused(o.paused);
