@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "CME212/Energy.hpp"
 #include "CME212/MeshFaults.hpp"
@@ -99,19 +100,26 @@ int main(int argc, char** argv) try {
   };
   const double most =
       CME212::divergence_energy(g, energy(), grav, dt, t_end);  // [J]
-  std::string failure;
+  const double stable = CME212::stable_step(g, spring);         // [s]
+  std::vector<std::string> failure;
   double next_line = 0;  // [s]
   CME212::Clock clock;
   // Returns false if the run has diverged, or the window was closed.
   const auto draw = [&](double t) {
     const auto show = [&] { viewer->draw_graph(g), viewer->set_label(t); };
     if (!(energy() <= most)) {  // also if it is NaN
-      failure = "diverged: at t = " + CME212::short_text(t) +
-                " s it gains energy from nothing; dt is " +
-                CME212::short_text(dt) + " s, 2/omega of this cloth about " +
-                CME212::short_text(CME212::stable_step(g, spring)) + " s";
-      std::cerr << failure << std::endl;
-      if (viewer) show(), viewer->set_message({failure});
+      const std::string limit = CME212::short_text(stable);
+      failure = {"diverged: at t = " + CME212::short_text(t) +
+                     " s it gains energy from nothing",
+                 "dt is " + CME212::short_text(dt) +
+                     " s, 2/omega of this cloth about " + limit + " s" +
+                     (dt > stable ? "; try" : "")};
+      if (dt > stable)
+        failure.push_back(std::string("  ") + argv[0] + ' ' + argv[1] + ' ' +
+                          argv[2] + ' ' + limit +
+                          (argc > 4 ? std::string(" ") + argv[4] : ""));
+      for (const auto& line : failure) std::cerr << line << std::endl;
+      if (viewer) show(), viewer->set_message(failure);
       return false;
     }
     if (t > next_line - dt / 2) {

@@ -26,9 +26,11 @@ class ClothProgram : public ::testing::Test {
   const CME212::TestFolder folder;
   const fs::path& dir = folder.path();
 
-  /** Run it. Words of @a arguments: as in a shell. */
+  /** Run it. Words of @a arguments: as in a shell. Its lines are joined(). */
   Result run(const std::string& arguments) {
-    return folder.run(CME212::program("cloth", "build/") + " " + arguments);
+    const Result r =
+        folder.run(CME212::program("cloth", "build/") + " " + arguments);
+    return {r.status, joined(r.out), joined(r.err)};
   }
   /** run() that ends with status 0. */
   Result success(const std::string& arguments) {
@@ -54,7 +56,7 @@ class ClothProgram : public ::testing::Test {
   /** The result of a program that ended with @a status of waitpid(). */
   Result result_of(int status) {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
-            contents(dir / "out"), contents(dir / "err")};
+            joined(contents(dir / "out")), joined(contents(dir / "err"))};
   }
   /** Start it as start(), and send it @a signals: the first as soon as @a ready
    * holds, or else when it catches it; the next ones when it has caught the one

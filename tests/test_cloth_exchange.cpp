@@ -48,7 +48,8 @@ TEST_F(ClothProgram, ReadsTheNetsAndTheFramesThatItWrites) {
       success(torn + "--out " + path("end.net") + " --ply " + path("ply"));
   const auto at = whole.out.find("nodes and ");
   const std::string edges = whole.out.substr(at + 10, 4);
-  const std::string end = " --plane 'at 0 0 -9' --t-end 0 --headless --out ";
+  const std::string end =
+      " --plane 'at 0 0 -9' --t-end 0 --headless --verbose --out ";
   Result r = success(path("end.net") + end + path("same.net"));
   EXPECT_EQ(r.err, "");
   EXPECT_TRUE(has(r.out, " nodes, " + edges));
@@ -70,7 +71,7 @@ TEST_F(ClothProgram, ReadsMeshesOfOtherPrograms) {
   file("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\n");
   file("a.toml", "net = 'a.obj'\npin = 'node 0'\n");
   file("a.edges", "0 1\n1 0\n1 3\n");
-  const std::string short_run = " --headless --t-end 0.01";
+  const std::string short_run = " --headless --verbose --t-end 0.01";
   struct {
     std::string options;
     const char *out, *err;
@@ -235,8 +236,9 @@ TEST_F(ClothProgram, FilmsMoveAndShowContactSlower) {
 TEST_F(ClothProgram, SaysWhatActsAndWhatItCosts) {
   const std::string scene =
       "--sheet 'nodes 5 5' --pin 'x 0' --plane 'at 0 0 -1' --damping 0.1 "
-      "--region 'from 0 0 0 to 0.3 1 0 stiffness-factor 4' --headless --t-end "
-      "0.01 ";
+      "--region 'from 0 0 0 to 0.3 1 0 stiffness-factor 4' --headless "
+      "--verbose "
+      "--t-end 0.01 ";
   EXPECT_TRUE(has(run(scene).out,
                   "a step of symplectic-euler, order 1: 1 force evaluation\n"
                   "  cloth of 5 x 5 nodes, 1 kg: 20 nodes moved\n"
@@ -250,7 +252,8 @@ TEST_F(ClothProgram, SaysWhatActsAndWhatItCosts) {
   EXPECT_TRUE(has(rk4, ": 4 times 72 springs\n"));
   EXPECT_TRUE(has(rk4, "plane at 0 0 -1: 25 nodes\n"));
   const std::string bare =
-      run("--sheet 'nodes 5 5' --gravity 0 --headless --t-end 0.01").out;
+      run("--sheet 'nodes 5 5' --gravity 0 --headless --verbose --t-end 0.01")
+          .out;
   for (const char* part : {"gravity", "drag", "plane", "pin", "tear"})
     EXPECT_FALSE(has(bare, "  " + std::string(part)));
   EXPECT_EQ(run(scene + "--quiet").out, "");

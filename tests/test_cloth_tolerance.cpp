@@ -82,7 +82,7 @@ TEST_F(Tolerance, ChoosesTheMethodUnlessOneIsGiven) {
   EXPECT_TRUE(has(run(sheet + "--tolerance 1e-3 --method rkn64").out,
                   "positions to 0.001 m: kept; measured error"));
   const std::string differs =
-      sheet + "--density 0.3 --damping 0.01 --tolerance 1e-3 ";
+      sheet + "--density 0.3 --damping 0.01 --tolerance 1e-3 --verbose ";
   const Result kept = success(differs);
   EXPECT_TRUE(has(kept.out, "a step of verlet"));
   EXPECT_TRUE(has(kept.out, "positions to 0.001 m: kept; "));
@@ -100,7 +100,7 @@ TEST_F(Tolerance, OneThatNoStepMeetsIsDiagnosedAsSuch) {
   // The cure works if it is typed in.
   const std::size_t end = r.err.find(" works: a trial");
   ASSERT_NE(end, std::string::npos) << r.err;
-  const std::size_t begin = r.err.rfind("; ", end) + 2;
+  const std::size_t begin = r.err.rfind(": --", end) + 2;
   const std::string cure = r.err.substr(begin, end - begin);
   EXPECT_TRUE(begins(cure, "--method verlet --dt ")) << r.err;
   EXPECT_EQ(run(sheet + cure).status, 0) << cure;
@@ -143,7 +143,7 @@ TEST_F(Tolerance, OfChosenStepsIsNotBrokenByTheFirstOnes) {
 TEST_F(Tolerance, OfContactIsKeptByVerlet) {
   const Result r = success(
       "--sheet 'nodes 11 11' --pin 'x 0' --plane 'at 0 0 -0.2 friction 0.4' "
-      "--t-end 0.5 --tolerance 1e-3 --headless");
+      "--t-end 0.5 --tolerance 1e-3 --headless --verbose");
   EXPECT_TRUE(has(r.out, "a step of verlet"));
   EXPECT_TRUE(has(r.out, "positions to 0.001 m: kept; "));
 }

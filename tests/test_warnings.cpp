@@ -244,6 +244,7 @@ TEST(Warnings, AreShownByARunOnceAndNotIfItIsToBeQuiet) {
                               "--t-end 0.01 --plane 'at 0 0 1' ";
   auto r = folder.run(command);
   EXPECT_EQ(r.status, 0);
+  r.err = joined(r.err);
   EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 3) << r.err;
   EXPECT_TRUE(begins(r.err, "cloth: warning: 600 of 625 nodes lie in no quad"));
   EXPECT_TRUE(has(r.err, "\ncloth: warning: 625 of 625 nodes start below"));

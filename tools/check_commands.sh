@@ -3,7 +3,8 @@
 # each line has to end with status 0, or with N if "# status N" stands behind
 # it. A quotation (lines that begin with >) has to be in what the commands of
 # the block before it said; "..." stands for any words. What is built, is built
-# in build/check, and run from there.
+# in build/check, and run from there. How blanks and lines part words is no
+# matter.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,7 +27,7 @@ run() {  # COMMAND
     </dev/null) || status=$?
   [ "$status" = "$want" ] || { verdict=FAIL; echo "$out"; echo "status $status"; }
   check "$1" "$verdict"
-  said+=$out$'\n'
+  said+=$(tr -s ' \n' ' ' <<<"$out")
 }
 look_up() {  # in said, for the quotation
   local part rest=${quote# } verdict=ok

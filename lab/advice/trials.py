@@ -129,6 +129,7 @@ class Scene(questions.Scene):
              "--threads", "1", "--method", method, "--dt", dt])
         if status:
             return None
+        text = re.sub(r"\n +", " ", text)  # lines broken for a terminal
         nodes, edges = map(int, found(r"^(\d+) nodes, (\d+) edges$",
                                       text).groups())
         evaluations = sum(

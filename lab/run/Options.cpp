@@ -9,7 +9,6 @@
 #include <functional>
 #include <iostream>
 #include <span>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +20,7 @@
 #include "lab/fast/Version.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
+#include "lab/run/Terminal.hpp"
 #include "lab/scenes/Fields.hpp"
 #include "lab/scenes/MeshFile.hpp"
 #include "lab/scenes/Nearest.hpp"
@@ -45,18 +45,6 @@ Usage: cloth [OPTIONS] [NODES TETS | NET])";
 constexpr std::array groups = {"Scene",  "Material",         "Method and step",
                                "Output", "Interrupted runs", "Advice",
                                "Other"};
-
-/** @a text in lines of at most @a width characters, where words allow. */
-std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
-  std::vector<std::string> lines(1);
-  std::istringstream in(text);
-  for (std::string word; in >> word;) {
-    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width)
-      lines.emplace_back();
-    lines.back() += (lines.back().empty() ? "" : " ") + word;
-  }
-  return lines;
-}
 
 /** Help in groups, of no more than 80 columns. */
 class Help : public CLI::Formatter {
@@ -319,6 +307,8 @@ void add_run_options(CLI::App& app, Options& o) {
                "files of this state")
       ->group("Method and step");
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
+  app.add_flag("--verbose", o.verbose,
+               "print, too, what acts on the cloth and what each part costs");
   app.option_defaults()->group("Interrupted runs");
   add_file(app, "--checkpoint", o.checkpoint,
            "save the run for --restart, regularly and at the end");
@@ -380,6 +370,7 @@ void read_file(const std::string& file, const std::string& text, Model& m,
 }  // namespace
 
 int parse(int argc, char** argv, Options& o) {
+  o.words.assign(argv, argv + argc);
   const std::string& file = o.config;
   bool dump = false;
   double kept_tolerance = 0;  // of a checkpoint's steps

@@ -39,6 +39,8 @@ struct Options {
   std::string checkpoint, restart;
   double every_seconds = 60;  ///< between two checkpoints [s] of the clock
 
+  std::vector<std::string> words;  ///< the command line
+  bool verbose = false;
   /** True if advice comes before the run, or instead of it. */
   bool asks_advice() const { return advise || automatic || assess; }
   bool pictures() const { return !screenshot.empty() || !video.empty(); }

@@ -23,8 +23,8 @@ void Progress::show(const std::string& text, double done) {
   text_ = text;
   std::ostringstream line;
   if (terminal_) {
-    const auto filled = std::size_t(30 * std::clamp(done, 0.0, 1.0));
-    line << "\r[" << std::string(filled, '#') << std::string(30 - filled, ' ')
+    const auto filled = std::size_t(20 * std::clamp(done, 0.0, 1.0));
+    line << "\r[" << std::string(filled, '#') << std::string(20 - filled, ' ')
          << "] ";
   }
   line << text;
@@ -33,7 +33,9 @@ void Progress::show(const std::string& text, double done) {
          << CME212::short_text(
                 std::ceil(seconds() * std::max(0., 1 / done - 1)))
          << " s left";
-  std::cerr << line.str() << (terminal_ ? "          " : "\n") << std::flush;
+  std::string all = line.str();
+  if (terminal_) all.resize(79, ' ');  // with the \r, so it never wraps
+  std::cerr << all << (terminal_ ? "" : "\n") << std::flush;
 }
 
 void Progress::end() const {

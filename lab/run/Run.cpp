@@ -12,6 +12,7 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/methods/Methods.hpp"
+#include "lab/run/Terminal.hpp"
 #include "lab/scenes/Acting.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/NetFile.hpp"
@@ -123,8 +124,9 @@ void Run::show_progress() {
 void Run::announce() {
   if (o_.quiet) return;
   const Net& mesh = scene_.mesh().mesh;
-  for (const auto& line : what_acts(o_.model, scene_.cloth(), mesh))
-    std::cout << line << '\n';
+  if (o_.verbose)
+    for (const auto& line : what_acts(o_.model, scene_.cloth(), mesh))
+      say(std::cout, line);
   const std::string_view method = scene_.method().name;
   const double dt = scene_.dt();
   const auto [limit, since] = scene_.control()
@@ -147,8 +149,8 @@ void Run::announce() {
     const double verlet = scene_.safe_limit(table::verlet);
     out << ": " << method << " has no stability limit";
     if (std::isfinite(verlet))
-      out << "; this is " << CME212::percent(dt / verlet)
-          << " of the stability limit of verlet (" << verlet << " s)";
+      out << "; this is " << dt / verlet
+          << " times the stability limit of verlet (" << verlet << " s)";
   } else if (limit > 0) {
     out << ": " << CME212::percent(dt / limit) << " of the stability limit ("
         << limit << " s, " << method << ')';
@@ -161,7 +163,7 @@ void Run::announce() {
         << CME212::percent(o_.model.step.gain) << " of the energy of motion";
   if (first_step_ > 0)
     std::cout << o_.restart << ": continues at t = " << scene_.time() << " s\n";
-  std::cout << out.str() << std::endl;  // at once, also into a pipe
+  say(std::cout, out.str());
   if (first_step_ == 0)  // they are about the cloth as it was made
     for (const auto& w : warnings(o_.model, mesh, scene_.cloth(), dt)) warn(w);
   if (const double work = scene_.flow().work; first_step_ == 0 && work > 0)
@@ -176,7 +178,7 @@ void Run::announce() {
 
 void Run::warn(const std::string& text) {
   if (o_.quiet) return;
-  std::cerr << "cloth: warning: " << text << '\n';
+  say(std::cerr, "cloth: warning: " + text);
   warnings_.push_back(text);
 }
 
@@ -223,7 +225,7 @@ int Run::finish() {
   write([this] {
     add_frame();  // of a run that is cut short
     for (const std::string& what : frames_.finish()) {
-      if (!o_.quiet) std::cout << what << '\n';
+      if (!o_.quiet) say(std::cout, what);
       wrote(what);
     }
   });
@@ -234,7 +236,7 @@ int Run::finish() {
     tell_work();
     if (scene_.control()) tell_steps(*scene_.control());
     if (const Verdict* said = verdict())
-      std::cout << said->text() << '\n';
+      say(std::cout, said->text());
     else if (!scene_.failure() && !o_.bounds_error)
       std::cout << "not compared with half of dt\n";
     if (scene_.changes_left() > 0)
@@ -381,26 +383,40 @@ void Run::tell_failure() {
   if (told_ || !scene_.failure()) return;
   told_ = true;
   progress_.end();
-  std::cerr << "cloth: " << scene_.explanation().text() << '\n';
+  const Explanation why = scene_.explanation();
+  tell(why.cause, why.remedy);
+  say(std::cerr, "place: " + why.place);
+}
+
+/** Say @a what is wrong and what helps, with the command for it. */
+void Run::tell(const std::string& what, const std::string& remedy) const {
+  say(std::cerr, "cloth: " + what);
+  say(std::cerr, "cure: " + remedy);
+  if (remedy == Explanation::interrupted) return;
+  const Diagnosis& d = scene_.diagnosis();
+  if (d.cure)
+    say(std::cerr, command_with(o_.words, d.cure->options(d.run.method)));
 }
 
 void Run::tell_interrupt() const {
   using CME212::short_text;
-  std::cerr << "cloth: " << name_of_interrupt()
-            << " ended the run at t = " << short_text(scene_.time()) << " s of "
-            << short_text(o_.model.t_end) << " s; kept: "
-            << (kept_.empty() ? "nothing, as no output was requested" : kept_)
-            << '\n';
+  say(std::cerr,
+      std::string("cloth: ") + name_of_interrupt() +
+          " ended the run at t = " + short_text(scene_.time()) + " s of " +
+          short_text(o_.model.t_end) + " s; kept: " +
+          (kept_.empty() ? "nothing, as no output was requested" : kept_));
 }
 
 void Run::print_summary() const {
   const Energies e = energies(scene_.cloth(), scene_.model().gravity);
-  std::cout << scene_.model().name << ": " << scene_.steps()
-            << " steps to t = " << scene_.time() << " s in " << seconds_
-            << " s; energy " << e.total() << " J = " << e.kinetic
-            << " kinetic + " << e.elastic << " elastic + " << e.gravitational
-            << " gravitational; " << scene_.cloth().num_nodes() << " nodes and "
-            << scene_.cloth().num_edges() << " edges left\n";
+  std::ostringstream out;
+  out << std::setprecision(3) << scene_.model().name << ": " << scene_.steps()
+      << " steps to t = " << scene_.time() << " s in " << seconds_
+      << " s; energy " << e.total() << " J = " << e.kinetic << " kinetic + "
+      << e.elastic << " elastic + " << e.gravitational << " gravitational; "
+      << scene_.cloth().num_nodes() << " nodes and "
+      << scene_.cloth().num_edges() << " edges left";
+  say(std::cout, out.str());
 }
 
 /** Print the cost of the run in numbers that are the same on every machine. */
@@ -414,7 +430,7 @@ void Run::tell_work() const {
         std::pair(w.products, "matrix product"),
         std::pair(w.factors, "Cholesky factor")})
     if (count > 0) text += ", " + count_of(std::size_t(count), what);
-  std::cout << "work: " << text << '\n';
+  say(std::cout, "work: " + text);
 }
 
 /** What half of the step shows; null if it was not tried. */
@@ -444,16 +460,18 @@ bool Run::judge() {
   const bool wrong = said && said->wrong() && !scene_.control();
   if (said && !std::exchange(judged_, true)) {
     if (wrong) {
-      std::string text = said->wrong_text() + "; ";
+      std::string text = said->wrong_text();
       try {
-        text += scene_.diagnosis().cause_text() + "; ";
+        text += "; " + scene_.diagnosis().cause_text();
       } catch (const Interrupted&) {  // remedy() says so
       }
-      warnings_.push_back(text + scene_.remedy());
-      std::cerr << "cloth: " << warnings_.back() << '\n';
+      warnings_.push_back(text + "; " + scene_.remedy());
+      tell(text, scene_.remedy());
     } else if (!o_.quiet && !said->fine()) {
-      warn((said->wrong() ? said->wrong_text() : said->difference()) + "; " +
-           scene_.remedy());
+      const std::string text =
+          said->wrong() ? said->wrong_text() : said->difference();
+      warnings_.push_back(text + "; " + scene_.remedy());
+      tell("warning: " + text, scene_.remedy());
     }
   }
   return !wrong;
@@ -465,7 +483,7 @@ void Run::tell_steps(const StepControl& c) const {
   out << std::setprecision(3) << "dt from " << r.shortest << " to " << r.longest
       << " s: shortened " << r.shortened << " times, lengthened "
       << r.lengthened << " times, " << r.taken_back << " steps taken back; ";
-  std::cout << out.str() << gain_text(c) << '\n';
+  say(std::cout, out.str() + gain_text(c));
 }
 
 }  // namespace lab

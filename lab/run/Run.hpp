@@ -97,6 +97,7 @@ class Run {
   void add_row();
   void show_progress();
   void tell_failure();
+  void tell(const std::string& what, const std::string& remedy) const;
   void tell_interrupt() const;
   void print_summary() const;
   void add_frame();

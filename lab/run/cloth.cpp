@@ -36,6 +36,7 @@
 #include "lab/run/Options.hpp"
 #include "lab/run/Progress.hpp"
 #include "lab/run/Run.hpp"
+#include "lab/run/Terminal.hpp"
 #include "lab/run/Window.hpp"
 #include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/Measure.hpp"
@@ -116,10 +117,10 @@ Accuracy measure_accuracy(Options& o) {
  * @return the exit status: 3 if it was not */
 int tell_accuracy(const Accuracy& a, int status, bool quiet) {
   if (a.kept()) {
-    if (!quiet && status == 0) std::cout << a.text() << '\n';
+    if (!quiet && status == 0) say(std::cout, a.text());
     return status;
   }
-  std::cerr << "cloth: " << a.text() << '\n';
+  say(std::cerr, "cloth: " + a.text());
   return status == 0 ? 3 : status;
 }
 
@@ -199,8 +200,9 @@ int run(Options o) {
     o.screenshot = "demo/" + m.name + ".png";
     o.video = "demo/" + m.name + ".mp4";
     if (!o.quiet)
-      std::cout << "no display: running without a window; a picture and a film "
-                   "go to the folder demo\n";
+      say(std::cout,
+          "no display: running without a window; a picture and a film go to "
+          "the folder demo");
     check_outputs(o);
   }
   Run run(scene, o);
@@ -210,7 +212,7 @@ int run(Options o) {
   if (!o.rest)
     run.announce();
   else if (!o.quiet)
-    std::cout << RestReport(scene).text();
+    say(std::cout, RestReport(scene).text());
   if (window) {
     window->show_strain(o.strain);
     window->set_paused(o.paused);

@@ -147,12 +147,9 @@ std::string Diagnosis::cause_text() const {
   };
   switch (cause) {
     case Cause::step:
-      if (run.dt > 0.97 * run.sharp)
-        limit(run.sharp), out << " in this configuration, ";
-      else
-        limit(run.safe), out << ", ";
-      out << info.name << "): the fastest waves in the springs grow in every "
-          << "step";
+      limit(run.safe);
+      out << ", " << info.name
+          << "): the fastest waves in the springs grow in every step";
       break;
     case Cause::drag:
       out << "drag makes the stability limit shorter: ";

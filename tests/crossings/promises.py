@@ -19,6 +19,11 @@ from scenes import options, scaled
 Broken = tuple[str, list[str]] | None
 
 
+def joined(text: str) -> str:
+    """Lines that were broken for a terminal, whole again."""
+    return re.sub(r"\n +", " ", text)
+
+
 class Run:
     """A run of ./cloth: its status, what it said, the state at its end."""
 
@@ -29,8 +34,10 @@ class Run:
         done = subprocess.run(
             [cloth, *arguments, "--headless", "--out", "end.net"],
             capture_output=True, text=True, timeout=60, cwd=folder)
-        self.status, self.text = done.returncode, done.stdout
-        self.said = re.findall("^cloth:.*", done.stderr, re.M)
+        self.status, self.text = done.returncode, joined(done.stdout)
+        # Each with its cure and its place.
+        self.said = [" ".join(a.split()) for a in re.findall(
+            r"^cloth:.*(?:\n(?!cloth:).*)*", done.stderr, re.M)]
         self.bits, self.rows = (
             f.read_text() if f.exists() else "" for f in files)
 
