@@ -155,7 +155,7 @@ TEST_F(ClothProgram, SaysCauseCureAndPlaceIn80Columns) {
   EXPECT_EQ(healthy.status, 0);
   EXPECT_LE(lines_of(healthy), 8) << healthy.out << healthy.err;
   const std::string all = run("--sheet 'nodes 3 3' --verbose --headless").out;
-  EXPECT_TRUE(has(all, "\n  gravity 9.81 m/s^2: 9 nodes\n"));
+  EXPECT_TRUE(has(all, "\n  gravity 9.81 m/s^2 down: 9 nodes\n"));
 }
 
 TEST_F(ClothProgram, SaysHowLongTheStepIsAndMayBe) {
