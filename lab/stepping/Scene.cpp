@@ -337,7 +337,7 @@ Attempt attempt(const Scene& failed, const Cure& cure, double t_end,
       return {false, trial->time()};
     if (!trial->witness()) return {true, trial->time()};
     const Verdict& v = trial->witness()->verdict(&observer);
-    return {!v.gains() && !v.was_off(), trial->time(), v.apart, v.answer};
+    return {!v.wrong() && !v.was_off(), trial->time(), v.apart, v.answer};
   } catch (const std::invalid_argument&) {  // not with this force
     return {false, 0};
   }
