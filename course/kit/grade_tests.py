@@ -21,7 +21,6 @@ import tempfile
 from dataclasses import dataclass
 from typing import NoReturn
 
-import build
 import diagnosis
 import grade
 import judge
@@ -30,6 +29,7 @@ import markers
 import once
 import submission
 import tasks
+import units
 
 TEST = re.compile(r'\bTASK\s{0,9}\(\s{0,9}"([\w.]{1,80})"\s{0,9},'
                   r'\s{0,9}([A-Za-z_]\w{0,80})\s{0,9}\)')
@@ -112,7 +112,7 @@ def run(kit: once.Kit, case: kit_check.Case,
         room = one.rooms["graph"][0]    # the submission's own
         room.tests = (room.built,)
         (room.built / f"{OWN}.cpp").write_text(tests.text, encoding="utf-8")
-        way = build.Way(tests.needs, "checked",
+        way = units.Way(tests.needs, "checked",
                         one.names if tests.needs != "graph" else ())
         unit = room.compile(way, [OWN])
         if unit.program:

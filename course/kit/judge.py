@@ -24,7 +24,6 @@ import threading
 from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
 
-import build
 import diagnosis
 import markers
 import mend
@@ -32,6 +31,7 @@ import names
 import once
 import ranking
 import sandbox
+import units
 import years
 
 PROGRAM = {"mass_spring.hpp", "mass_spring.cpp"}
@@ -133,7 +133,7 @@ def wrong(answers: sandbox.Answers,
                  for name in sorted(some_of - found)), None)
 
 
-def refused(unit: build.Unit) -> Result:
+def refused(unit: units.Unit) -> Result:
     """The result of a unit that was not even compiled."""
     return Result("stopped" if unit.refused == OVER else "not compiled",
                   unit.refused, doubtful=unit.doubtful)
@@ -159,10 +159,10 @@ class Memory:
     grade many that differ little. Given to Judge, it saves most of the work."""
 
     def __init__(self):
-        self.kept: dict[tuple[build.Way, tuple[str, ...]], list[
+        self.kept: dict[tuple[units.Way, tuple[str, ...]], list[
             tuple[set[str], dict[str, bytes], Results]]] = {}
 
-    def recall(self, way: build.Way, tests: tuple[str, ...],
+    def recall(self, way: units.Way, tests: tuple[str, ...],
                files: dict[str, bytes]) -> Results | None:
         for there, read, results in self.kept.get((way, tests), []):
             if there == files.keys() and all(
@@ -170,7 +170,7 @@ class Memory:
                 return dict(results)
         return None
 
-    def keep(self, way: build.Way, tests: tuple[str, ...],
+    def keep(self, way: units.Way, tests: tuple[str, ...],
              files: dict[str, bytes], included: set[str],
              results: Results) -> None:
         self.kept.setdefault((way, tests), []).append(
@@ -195,14 +195,14 @@ class Judge:
         if kit.answers is None:     # it answers all questions
             self.names += ("KIT_SOLUTION",)
         self.given = year.unpacked() / "given" if year else None
-        own = build.Room(kit, folder / "own", files, self.given)
-        self.rooms: dict[str, list[build.Room]] = {
+        own = units.Room(kit, folder / "own", files, self.given)
+        self.rooms: dict[str, list[units.Room]] = {
             "graph": [own], "cloth": [own], "step": [own], "program": []}
         ours = {name: text for name, text in solution().items()
                 if name in ("Graph.hpp", "mass_spring.hpp")}
 
         def with_ours(folder_name, *names_of_ours):
-            room = build.Room(kit, folder / folder_name, {
+            room = units.Room(kit, folder / folder_name, {
                 **files, **{name: ours[name] for name in names_of_ours}},
                 self.given)
             for name in names_of_ours:
@@ -211,7 +211,7 @@ class Judge:
         if files["Graph.hpp"] != ours["Graph.hpp"]:
             self.rooms["cloth"].insert(0, with_ours("given", "Graph.hpp"))
         # A main() and a step are judged by what they do with right forces, too.
-        self.beside: build.Room | None = None
+        self.beside: units.Room | None = None
         if any(files.get(name) != text for name, text in ours.items()):
             self.beside = with_ours("beside", *ours)
             self.rooms["step"].insert(0, self.beside)
@@ -221,9 +221,9 @@ class Judge:
 
     def run(self, tests: dict[str, str]) -> Results:
         """{test: Result} of {test: what it needs}."""
-        groups: dict[build.Way, list[str]] = {}
+        groups: dict[units.Way, list[str]] = {}
         for test, needs in tests.items():
-            way = build.way_of(test, needs)
+            way = units.way_of(test, needs)
             if needs != "graph":
                 way = dataclasses.replace(way, defines=way.defines + self.names)
             groups.setdefault(way, []).append(test)
@@ -235,7 +235,7 @@ class Judge:
             return {test: result for part in found
                     for test, result in part.items()}
 
-    def group(self, way: build.Way, tests: list[str]) -> Results:
+    def group(self, way: units.Way, tests: list[str]) -> Results:
         results: Results = {}
         if way.needs == "cloth" and not PROGRAM & self.files.keys():
             return {test: Result("missing", "there is no mass_spring.hpp and "
@@ -263,24 +263,24 @@ class Judge:
                     results[test] = result
         return results
 
-    def attempts(self, way: build.Way,
-                 tests: list[str]) -> Iterator[tuple[build.Room, build.Way]]:
+    def attempts(self, way: units.Way,
+                 tests: list[str]) -> Iterator[tuple[units.Room, units.Way]]:
         """In what tests are built: each passes if it does in any of them."""
-        own = build.way_of(tests[0], way.needs)
+        own = units.way_of(tests[0], way.needs)
         main = "KIT_PROGRAM" in own.defines
         for room in self.rooms[way.needs] + main * self.rooms["program"]:
             yield room, (way if room is not self.beside else
                          dataclasses.replace(way, defines=own.defines
                                              + names.defines(room.files)))
 
-    def judged(self, room: build.Room, way: build.Way,
+    def judged(self, room: units.Room, way: units.Way,
                tests: list[str]) -> Results:
         """All stages of a main() in one unit, or else in one each: a header
         that may be included once is no part of the others."""
         results = self.remembered(room, way, tests)
         again = [test for test in results
                  if results[test].status == "not compiled"]
-        if build.all_stages(way) and again:
+        if units.all_stages(way) and again:
             others = tuple(name for name in way.defines if name != "KIT_STAGES")
             for stage in (LAST_STAGE, *STAGES_BEFORE):
                 found = self.remembered(room, dataclasses.replace(
@@ -293,7 +293,7 @@ class Judge:
                 again = [test for test in again if results[test].passed]
         return results
 
-    def remembered(self, room: build.Room, way: build.Way,
+    def remembered(self, room: units.Room, way: units.Way,
                    tests: list[str]) -> Results:
         if not self.memory:
             return self.attempt(room, way, tests, set())
@@ -304,7 +304,7 @@ class Judge:
             self.memory.keep(way, tuple(tests), room.files, read, known)
         return known
 
-    def attempt(self, room: build.Room, way: build.Way, tests: list[str],
+    def attempt(self, room: units.Room, way: units.Way, tests: list[str],
                 read: set[str]) -> Results:
         """Each test of a room, in as few units as compile. What they read of
         the submission is added to `read`."""
@@ -338,21 +338,21 @@ class Judge:
                 lambda test: self.alone(room, way, test, read), alone)))
         return self.explained(room, way, results, read)
 
-    def mended(self, room: build.Room, way: build.Way, tests: list[str],
-               bridge: build.Unit, read: set[str]) -> Results:
+    def mended(self, room: units.Room, way: units.Way, tests: list[str],
+               bridge: units.Unit, read: set[str]) -> Results:
         """The same without the functions that do not compile."""
         told = Result("not compiled", diagnosis.compile_message(
             bridge.output, room.names))
         whole, files = room, room.files
         # All stages: what is wrong may be that they share a unit.
-        for _ in range(0 if build.all_stages(way) else mend.ROUNDS):
+        for _ in range(0 if units.all_stages(way) else mend.ROUNDS):
             left = mend.without_broken(files, [
                 error for error in diagnosis.compile_errors(bridge.output)
                 if error.file in whole.names])
             if not left:
                 break
             files = left
-            room = build.Room(
+            room = units.Room(
                 self.kit, self.folder / f"mended{next(self.numbers)}", files,
                 whole.given)
             room.names = whole.names
@@ -364,7 +364,7 @@ class Judge:
                 return {test: mended(results[test]) for test in tests}
         return {test: told for test in tests}
 
-    def explained(self, room: build.Room, way: build.Way, results: Results,
+    def explained(self, room: units.Room, way: units.Way, results: Results,
                   read: set[str]) -> Results:
         """With the compiler's own words for calls that do not compile, and with
         the place of a crash in what was built without sanitizers."""
@@ -389,7 +389,7 @@ class Judge:
                         result, got=f"an error: {error}")
         return results
 
-    def alone(self, room: build.Room, way: build.Way, test: str,
+    def alone(self, room: units.Room, way: units.Way, test: str,
               read: set[str]) -> Result:
         unit = self.compile(room, way, [test], read)
         if unit.program:
@@ -398,16 +398,16 @@ class Judge:
             "not compiled", diagnosis.compile_message(unit.output, room.names,
                                                       test))
 
-    def compile(self, room: build.Room, way: build.Way, tests: list[str],
-                read: set[str], link: bool = True) -> build.Unit:
+    def compile(self, room: units.Room, way: units.Way, tests: list[str],
+                read: set[str], link: bool = True) -> units.Unit:
         with self.jobs:
-            unit = (build.Unit(None, refused=OVER) if self.seconds > BUDGET
+            unit = (units.Unit(None, refused=OVER) if self.seconds > BUDGET
                     else room.compile(way, tests, link))
             self.seconds += unit.seconds
         read |= unit.included
         return unit
 
-    def run_all(self, unit: build.Unit, names: Container[str]) -> Results:
+    def run_all(self, unit: units.Unit, names: Container[str]) -> Results:
         """Each test of a program in a process of its own. Messages name places
         in these files first."""
         assert unit.program
@@ -418,10 +418,10 @@ class Judge:
         unit.program.unlink()
         return results
 
-    def run_one(self, unit: build.Unit, names: Container[str], test: str,
+    def run_one(self, unit: units.Unit, names: Container[str], test: str,
                 kit: once.Kit, data: pathlib.Path) -> Result:
         assert unit.program
-        jail = [*kit.jail, *build.flags("--read", [
+        jail = [*kit.jail, *units.flags("--read", [
             "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
             "/dev/null", "/dev/zero", "/dev/urandom", unit.program, data])]
         expected = kit.answers
@@ -477,7 +477,7 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
     files = solution()
     kit.answers = None
     folder = kit.locked_part("solution", [
-        *once.KIT.glob("*.*"), *once.TESTS.glob("*.*"), *build.ASKED.glob("*"),
+        *once.KIT.glob("*.*"), *once.TESTS.glob("*.*"), *units.ASKED.glob("*"),
         *map(markers.path_of, markers.SOURCES),
         *(once.ROOT / "CME212").rglob("*.hpp")], make,
         (sorted(tests.items()),))

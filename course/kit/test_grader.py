@@ -10,10 +10,10 @@ import sys
 import tempfile
 import unittest
 
-import build
 import child
 import once
 import submission
+import units
 
 PROBE = r"""
 #include <fcntl.h>
@@ -211,13 +211,13 @@ class Read(unittest.TestCase):
     def test_all_that_reads_sources(self):
         child.run([sys.executable, "-c", """
 import json, sys
-import build, mend, names, submission
+import mend, names, submission, units
 for text in json.load(sys.stdin):
     files = {"mass_spring.hpp": text.encode()}
     submission.suspects("a.hpp", files["mass_spring.hpp"])
     list(mend.functions(text))
     names.defines(files)
-    build.macros(files, build.words_of(build.TESTS))
+    units.macros(files, units.words_of(units.TESTS))
 """], 100, cwd=once.KIT, input=json.dumps(LONG), text=True, check=True)
 
     def test_comments_end_and_strings_stay(self):
@@ -226,10 +226,10 @@ for text in json.load(sys.stdin):
             'a  \n c  \n\nR"x( /* )x" "//" \'"\'  ')
 
     def test_macros_for_words_of_the_tests_end(self):
-        self.assertEqual(build.macros({
+        self.assertEqual(units.macros({
             "a.hpp": b"#define check_near(...)\n#  define N_OF_MINE 5\n",
             "b.hpp": b"#/**/define \\\nstatic_cast x\n%:define hold(a)"},
-            build.words_of(build.TESTS)),
+            units.words_of(units.TESTS)),
             ["check_near", "hold", "static_cast"])
 
     def test_a_compiler_blames_a_source_or_fails_by_itself(self):
@@ -241,14 +241,14 @@ for text in json.load(sys.stdin):
                 "ld: unit1.s:(.text+0x5): undefined reference to `f()'",
                 "wasm-ld: error: a.o: undefined symbol: f()",
                 "cc1plus: out of memory allocating 65536 bytes"):
-            self.assertTrue(build.blames_source(said), said)
+            self.assertTrue(units.blames_source(said), said)
         for said in (
                 "", "g++: fatal error: Killed signal terminated cc1plus",
                 f"unit3.s: Fatal error: can't write 41 bytes: '{disk}'",
                 f"unit1.cpp:2:1: fatal error: error writing to a.s: {disk}",
                 "ld: final link failed: Input/output error\n"
                 "collect2: error: ld returned 1 exit status"):
-            self.assertFalse(build.blames_source(said), said)
+            self.assertFalse(units.blames_source(said), said)
 
 
 class Deny(Folder):
@@ -262,7 +262,7 @@ class Deny(Folder):
         with socket.socket() as listening:
             listening.listen()
             done = child.run(
-                [*kit.jail, *build.flags("--read", [
+                [*kit.jail, *units.flags("--read", [
                     "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/proc/self",
                     "/dev/null", program]), "--", program, file],
                 stderr=subprocess.PIPE, text=True)

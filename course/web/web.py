@@ -34,9 +34,9 @@ HEADERS = (KIT.parents[1] if KIT.is_dir() else ROOM.parent) / "CME212"
 sys.path.append(str(KIT))
 BadInput: type[Exception] = OSError
 if KIT.is_dir():
-    import build
     import once
     import submission
+    import units
     BadInput = submission.BadInput
 SOURCES = ("cloth.cpp", "thrown.cpp")
 # Newer versions of clang want another name of the target, older ones this one.
@@ -91,7 +91,7 @@ def compiled(files: dict[str, bytes], *more: str) -> bytes | None:
             home = pathlib.Path(
                 os.path.realpath(shutil.which(words[0]) or "/usr/bin/")).parent
             try:
-                unit = build.Sources(  # type: ignore[attr-defined]
+                unit = units.Sources(  # type: ignore[attr-defined]
                     once.Kit.only_jail(), folder / "room", files,
                     [ROOM, HEADERS, include, home], ()).compiled(words)
             except once.KitError as error:

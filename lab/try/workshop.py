@@ -15,11 +15,11 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "course/kit"))
 
-import build       # noqa: E402  (from course/kit)
-import diagnosis   # noqa: E402
+import diagnosis   # noqa: E402  (from course/kit)
 import once        # noqa: E402
 import sandbox     # noqa: E402
 import submission  # noqa: E402
+import units       # noqa: E402
 from submission import BadInput  # noqa: E402: why a file can't be measured
 
 BUILT = ROOT / "build/try"
@@ -131,11 +131,11 @@ class Workshop:
             raise BadInput(str(error)) from None
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILT, prefix="room-"))
         self.folder.chmod(0o755)
-        self.sources = build.Sources(  # type: ignore[attr-defined]
+        self.sources = units.Sources(  # type: ignore[attr-defined]
             self.jail, self.folder, files, [
                 ROOT / "CME212", ROOT / "Graph.hpp", ROOT / "mass_spring.hpp",
                 ROOT / "methods.hpp", ROOT / "lab/try", self.prelude],
-            build.words_of(ROOT / "lab/try"))  # type: ignore[attr-defined]
+            units.words_of(ROOT / "lab/try"))  # type: ignore[attr-defined]
         self.where = f"{self.path}:1: {step}"
         self.programs: dict[str, pathlib.Path] = {}
         self.slow: list[str] = []   # parts that took too long
@@ -206,7 +206,7 @@ class Workshop:
         command = self.programs[kind], part, from_write, *more
         process = subprocess.Popen(
             [*self.jail, "--cpu", str(limits.cpu),
-             *build.flags("--read", [  # type: ignore[attr-defined]
+             *units.flags("--read", [  # type: ignore[attr-defined]
                  self.folder, "/usr/lib", "/lib", "/lib64", "/etc/ld.so.cache",
                  "/proc/self"]),
              "--", *map(str, command)], cwd="/",
