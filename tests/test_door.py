@@ -17,7 +17,6 @@ import unittest.mock
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / room) for room in (
     "course/kit", "course/web", "lab/try")]
-import build            # noqa: E402
 import child            # noqa: E402
 import class_output     # noqa: E402
 import class_page       # noqa: E402
@@ -26,6 +25,7 @@ import judge            # noqa: E402
 import once             # noqa: E402
 import submission       # noqa: E402
 import tasks            # noqa: E402
+import units            # noqa: E402
 import web              # noqa: E402
 import whole_class      # noqa: E402
 import workshop         # noqa: E402
@@ -120,7 +120,7 @@ class Door(unittest.TestCase):
 
     def test_no_file_of_another_is_included(self):
         kit = once.Kit()
-        way = build.way_of(  # type: ignore[attr-defined]
+        way = units.way_of(  # type: ignore[attr-defined]
             "3.1.position", "graph")
         for number, (name, text) in enumerate(TABLE["include"].items()):
             text = text.replace("ROOT", str(once.ROOT)) + "\n"

@@ -72,7 +72,7 @@ steps() {  # NUMBER: presses of n, each seen
 message() { [ "$(picture | grep -c "$mark")" -ge 100 ]; }
 ends() {  # NAME STATUS WORDS, that it said
   wait "$run" && status=0 || status=$?
-  run="" out=$(<"$tmp/out")
+  run="" out=$(tr '\n' ' ' <"$tmp/out" | tr -s ' ')
   expect "$2"; says "$3"; ok "$1"
 }
 

@@ -15,7 +15,7 @@ struct Gravity {
   Gravity(double g = grav) : a(0, 0, -std::abs(g)) {}
   explicit Gravity(const Point& vector) : a(vector) {}
 
-  double size() const { return std::hypot(a.x, a.y, a.z); }
+  double size() const { return is_down() ? -a.z : norm(a); }
   /** Along -z, or 0: a number says it. */
   bool is_down() const { return a.x == 0 && a.y == 0 && a.z <= 0; }
   bool operator==(const Gravity&) const = default;

@@ -14,6 +14,7 @@
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Fields.hpp"
+#include "lab/scenes/Interrupt.hpp"
 #include "lab/scenes/Net.hpp"
 #include "lab/stepping/RestReport.hpp"
 #include "lab/stepping/Settled.hpp"

@@ -215,7 +215,8 @@ def test_nodes_are_numbers_or_a_mask(fixed, held):
 @pytest.mark.parametrize("name, values", [
     ("k", ["soft", 1j, True, None, np.nan]), ("L", [[np.inf], ["a"]]),
     ("mass", [[1, 2, 3], pathlib.Path(".")]), ("v", [[[0, 0, 1j]] * 2]),
-    ("drag", [-1, "x", np.inf]), ("gravity", [np.nan]),
+    ("drag", [-1, "x", np.inf]), ("gravity", [np.nan, [0, np.inf, 0],
+                                                   [1, 2]]),
     ("edges", [[[0.0, 1.0]], [[True, False]], [["a", "b"]], [[0, 1, 1]], None]),
     ("fixed", [[True], [0.0], [1 + 0j], ["0"], [[0]], "0", None, [-1],
                [np.nan], 0])])
@@ -224,6 +225,14 @@ def test_what_can_not_be_used_is_refused_by_name(name, values):
         given: dict[str, Any] = {"x": PAIR, "edges": [[0, 1]], name: value}
         with pytest.raises((TypeError, ValueError), match="^" + name):
             mass_spring.Net(**given)
+
+
+def test_gravity_acts_down_or_along_its_vector():
+    for g, a in ((9.81, (0, 0, -9.81)), (-9.81, (0, 0, -9.81)),
+                 ((3, -4, 0), (3, -4, 0))):
+        net = mass_spring.Net(PAIR, [[0, 1]], mass=2.0, gravity=g)
+        assert net.force(net.x, 0 * net.x) == pytest.approx(
+            2 * np.array([a, a]))
 
 
 def test_a_run_goes_on_with_the_rest_lengths_of_the_net():
