@@ -130,7 +130,7 @@ class Door(unittest.TestCase):
                 (folder / file).write_text(text + more)
             files = submission.take(folder).files
             with self.subTest(name, door="grade, class, grade-tests"):
-                room = build.Room(  # type: ignore[attr-defined]
+                room = units.Room(  # type: ignore[attr-defined]
                     kit, self.folder(f"room{number}"), files)
                 unit = room.compile(way, [], link=False)
                 self.hold(unit.refused or unit.output)

@@ -98,7 +98,7 @@ class Kit:
         self.secret = b""
         self.answers: Any = None
         self.data: Any = None       # a folder
-        self.assembler: dict = {}   # of standard headers: build.Room
+        self.assembler: dict = {}   # of standard headers: units.Room
         self.linked = sorted(linked.glob("*.o"))
         if unsafe:
             self.jail.append("--unsafe")
