@@ -305,8 +305,13 @@ void Stepper::keep(Snapshot& s) const {
 /** The guard's verdict on the present state, of energy @a e. */
 bool Stepper::guard(const Energies& e) {
   if (!guard_->accept(system_.cloth, e, flow())) {
-    if (!std::isfinite(e.total()) || !confirms_ || !confirms_(e))
-      return not_good(clock_.steps);
+    try {
+      if (!std::isfinite(e.total()) || !confirms_ || !confirms_(e))
+        return not_good(clock_.steps);
+    } catch (const Interrupted&) {  // nobody knows: end before these steps
+      back_to_checked();
+      return true;
+    }
     guard_->allow(system_.cloth, e.internal());
   }
   keep_checked();
@@ -345,8 +350,7 @@ bool Stepper::take_back() {
 /** Repeat the steps since the last good state until one fails.
  * @param last the step that is known to fail  @return false if one did */
 bool Stepper::replay(long long last) {
-  guard_->restore(system_.cloth);
-  go_on(checked_, flow_);
+  back_to_checked();
   while (clock_.steps < last && time() < t_end_) {
     if (!advance()) return fail(Failure::Kind::refused);
     if (!guard_->accept(system_.cloth, flow()))
@@ -356,11 +360,16 @@ bool Stepper::replay(long long last) {
   return true;  // a node that failed and was then removed can't fail again
 }
 
+/** Continue from the last state that the guard has accepted. */
+void Stepper::back_to_checked() {
+  guard_->restore(system_.cloth);
+  go_on(checked_, flow_);
+}
+
 /** Set failure(), and go back to the state before the step.  @return false */
 bool Stepper::fail(Failure::Kind kind) {
   const WorstPlace place(system_.cloth);
-  guard_->restore(system_.cloth);
-  go_on(checked_, flow_);
+  back_to_checked();
   failure_ = {kind,        place, std::string(entry_.info.name), time(), dt(),
               steps() + 1, error_};
   return false;

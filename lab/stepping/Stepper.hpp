@@ -280,6 +280,7 @@ class Stepper {
   bool take_back();
   bool replay(long long last);
   bool fail(Failure::Kind kind);
+  void back_to_checked();
   void go_on(const StepClock& clock, const EnergyFlow& flow);
   void keep_checked();
 };
