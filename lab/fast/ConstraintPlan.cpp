@@ -118,18 +118,14 @@ class Called final : public SweptConstraint {
   explicit Called(std::shared_ptr<const ZeroConstraint> c) : c_(std::move(c)) {}
   void operator()(Cloth& g, double t) const override {
     const auto version = arrays(g).version();
-    const Point before = moment_of(g);
+    const Point before = first_moment(g);
     (*c_)(g, t);
     if (arrays(g).version() != version)
-      exchange_.moment += before - moment_of(g);
+      exchange_.moment += before - first_moment(g);
   }
 
  private:
   std::shared_ptr<const ZeroConstraint> c_;
-
-  static Point moment_of(const Cloth& g) {
-    return total_mass(g) * center_of_mass(g);
-  }
 };
 
 }  // namespace

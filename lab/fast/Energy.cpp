@@ -50,12 +50,15 @@ double total_mass(const Cloth& g) {
                         [](const Point&, const NodeData& n) { return n.mass; });
 }
 
+Point first_moment(const Cloth& g) {
+  return sum_over_nodes(
+      g, [](const Point& x, const NodeData& n) { return n.mass * x; });
+}
+
 Point center_of_mass(const Cloth& g) {
   const double mass = total_mass(g);
   if (!(mass > 0)) return Point();
-  return sum_over_nodes(
-             g, [](const Point& x, const NodeData& n) { return n.mass * x; }) /
-         mass;
+  return first_moment(g) / mass;
 }
 
 double max_speed(const Cloth& g) {

@@ -51,6 +51,9 @@ double elastic_energy(const Cloth& g);
 /** Total mass [kg].  O(N) */
 double total_mass(const Cloth& g);
 
+/** The sum of m x [kg m].  O(N) */
+Point first_moment(const Cloth& g);
+
 /** Center of mass [m]; the origin for a cloth without nodes.  O(N) */
 Point center_of_mass(const Cloth& g);
 

@@ -392,7 +392,8 @@ void Run::tell_failure() {
 void Run::tell(const std::string& what, const std::string& remedy) const {
   say(std::cerr, "cloth: " + what);
   say(std::cerr, "cure: " + remedy);
-  if (remedy == Explanation::interrupted) return;
+  // A run that goes on from a checkpoint has no command from the start.
+  if (remedy == Explanation::interrupted || !o_.restart.empty()) return;
   const Diagnosis& d = scene_.diagnosis();
   if (d.cure)
     say(std::cerr, command_with(o_.words, d.cure->options(d.run.method)));

@@ -32,7 +32,10 @@ std::vector<std::string> words_of(const std::string& line, bool command) {
       const bool is_value = command && c != '-' && !words.empty() &&
                             words.back().starts_with("--") &&
                             words.back().find(' ') == std::string::npos;
-      is_value ? words.back().push_back(' ') : void(words.emplace_back());
+      if (is_value)
+        words.back() += ' ';
+      else
+        words.emplace_back();
     }
     words.back() += c;
     if (command && c == '\'' && !escaped) quoted = !quoted;
@@ -89,9 +92,8 @@ std::string command_with(const std::vector<std::string>& words,
   std::string command = "   ";
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::string name = words[k].substr(0, words[k].find('='));
-    const bool replaced =
-        name == "--restart" || ((name == "--dt" || name == "--method") &&
-                                cure.find(name + ' ') != cure.npos);
+    const bool replaced = (name == "--dt" || name == "--method") &&
+                          cure.find(name + ' ') != cure.npos;
     if (!replaced)
       command += ' ' + in_shell(words[k]);
     else if (name == words[k])

@@ -18,8 +18,8 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t width);
  * part of it. Only a word may be longer. */
 void say(std::ostream& out, std::string_view text);
 
-/** The command line @a words with the options @a cure instead of its own, from
- * the start: a command for say(). */
+/** The command line @a words with the options @a cure instead of its own: a
+ * command for say(). */
 std::string command_with(const std::vector<std::string>& words,
                          const std::string& cure);
 
