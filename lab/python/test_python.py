@@ -228,8 +228,10 @@ def test_what_can_not_be_used_is_refused_by_name(name, values):
 
 
 def test_gravity_acts_down_or_along_its_vector():
-    for g, a in ((9.81, (0, 0, -9.81)), (-9.81, (0, 0, -9.81)),
-                 ((3, -4, 0), (3, -4, 0))):
+    down = [0, 0, -9.81]
+    cases: list[tuple[Any, list]] = [
+        (9.81, down), (-9.81, down), ([3, -4, 0], [3, -4, 0])]
+    for g, a in cases:
         net = mass_spring.Net(PAIR, [[0, 1]], mass=2.0, gravity=g)
         assert net.force(net.x, 0 * net.x) == pytest.approx(
             2 * np.array([a, a]))
