@@ -257,9 +257,10 @@ def balance(c: Case) -> Broken:
         return None  # planes that contradict each other push at each step
     if not c.sound or not bad(first := off(c.base)):
         return None
-    if c.fixed:
-        fine = c.run("--csv", "rows.csv", "--every", "1",
-                     dt=c.scene["dt"] / 4)
+    if c.fixed:  # work is a quadrature: a pin turns by 0.1 rad a step then
+        turns = [norm(p.get("turn", 0)) for p in c.scene.get("pin", [])]
+        fine = c.run("--csv", "rows.csv", "--every", "1", dt=min(
+            c.scene["dt"] / 4, .1 / max(turns + [1e-9])))
         if fine.status or abs(off(fine)) < .5 * abs(first):
             return None
     return "off", [f"{first:.3f} of the internal energy; the motion is "
