@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include "CME212/Util.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/page/Page.hpp"
 #include "lab/page/PageScenes.hpp"
@@ -122,6 +123,37 @@ double beyond() {
       most = std::max(most, std::abs(double(points[4 * i + k]) - here));
     }
   return most;
+}
+
+/** What the page says of a run of @a scene, at its end or after 40 steps. */
+std::string said_of(unsigned scene, const MethodEntry& method, double share) {
+  page_load(scene, 5);
+  for (const std::string& line : {"method " + std::string(method.info.name),
+                                  "step " + CME212::short_text(share)}) {
+    char* const room = page_room(unsigned(line.size()) + 1);
+    std::memcpy(room, line.c_str(), line.size() + 1);
+    page_request(room);
+  }
+  for (int k = 0; k < 40 && !page_check(); ++k) page_step();
+  std::string all = page_readings(0);
+  const std::size_t from = all.find("\"warning\":");
+  all = all.substr(from, all.find_first_of(",}", from) - from);
+  if (page_check()) all += page_failure(0), all += page_explain();
+  return all;
+}
+
+TEST(PageCalls, NoTextNamesAnOptionOrANumberThatIsNone) {
+  int failed = 0, scene = 0;
+  for (const MethodEntry& method : methods)
+    for (double share : {1.3, 100.}) {
+      // Eight scenes whose grid is as small as is asked for.
+      const std::string all = said_of(unsigned(scene++ % 8), method, share);
+      SCOPED_TRACE(all);
+      failed += has(all, "remedy");
+      for (const char* none : {"--", "nan", "inf ", "none ms", "undefined"})
+        EXPECT_FALSE(has(all, none)) << none;
+    }
+  EXPECT_GT(failed, 10);
 }
 
 TEST(PageCalls, AStepBeyondTheLimitFailsAndIsDrawnBeyond) {

@@ -26,10 +26,11 @@ using json::Json, json::list, json::members, json::object;
 /** The warning of ./cloth about the run of @a s; of its energy with a remedy,
  * which takes as long as to find one; "" if there is none. */
 std::string warning_text(const Scene& s) {
-  if (const std::string missed = s.missed_text(); !missed.empty())
+  const auto name = &Cure::in_words;
+  if (const std::string missed = s.missed_text(name); !missed.empty())
     return missed;
   const Verdict* const wrong = s.wrong();
-  return wrong ? wrong->wrong_text() + "; " + s.remedy() : "";
+  return wrong ? wrong->wrong_text() + "; " + s.remedy(name) : "";
 }
 
 Json json_of(const RunReadings& r) {
@@ -175,9 +176,13 @@ double page_beyond(unsigned side, unsigned steps) {
 }
 const char* page_explain() {
   const Scene& scene = state().live->scene();
-  const Explanation why = scene.explanation();
-  const auto& cure = scene.diagnosis().cure;
-  return say(object("cause", why.cause, "remedy", why.remedy, "cure",
+  const Diagnosis& why = scene.diagnosis();
+  const auto& cure = why.cure;
+  const Failure& f = *scene.failure();
+  const bool diverged = f.kind == Failure::Kind::diverged;
+  return say(object("cause",
+                    (diverged ? "" : f.what() + ": ") + why.cause_text(),
+                    "remedy", why.remedy_text(&Cure::in_words), "cure",
                     cure ? object("method", cure->method.info.name, "share",
                                   cure->dt / dt_unit(scene, cure->method))
                          : Json{"null"}));

@@ -7,12 +7,6 @@ const pause = 800;      // [ms] until it is shown again
 const strains = ['strain 2 %', '45 %'];
 const ways = ['moves one way', 'the other way'];
 const inMs = seconds => `${shortNumber(1e3 * seconds)} ms`;
-// The words of ./cloth, whose options are sliders here.
-const inPage = words => words.replace(/^diverged: /, '')
-  .replace(/--method (\S+) --dt (\S+)/g,
-    (_, method, dt) => `${method} with a step of ${inMs(dt)}`)
-  .replace(/--dt (\S+)/g, (_, dt) => `a step of ${inMs(dt)}`)
-  .replace(/ in the step to t = \S+ s/, " in one step");
 
 class FailurePicture extends Picture {
   constructor(...all) {
@@ -184,9 +178,9 @@ class FailurePicture extends Picture {
       ? `Apply the cure: ${cure.method}, dt / limit ${share}`
       : `Apply the cure: dt / limit ${share}`);
     const {cause = '', remedy = '', place = ''} = failure ?? {};
-    this.say('.fault b', inPage(cause));
-    setText(this.find('.fault span'), inPage(remedy).replace(/^[a-z]/,
-      letter => letter.toUpperCase()));
+    this.say('.fault b', cause);
+    setText(this.find('.fault span'),
+      remedy && remedy[0].toUpperCase() + remedy.slice(1));
     setText(this.find('.place'), place);
   }
 }

@@ -326,7 +326,7 @@ function describe() {
   }
   setText($('spoken'), `${scene().title}, ${settings.method}, at ${
     r.main.time.toFixed(2)} seconds: ${failure ? `it failed: ${
-    inPage(failure.cause)}` : r.main.kinetic < 1e-3 ? 'it is at rest' :
+    failure.cause}` : r.main.kinetic < 1e-3 ? 'it is at rest' :
     `it moves, with ${shortNumber(r.main.kinetic, 2)} joules`}; its lowest ` +
     `node is at a height of ${shortNumber(low, 2)} meters; the longest ` +
     `spring is stretched by ${shortNumber(100 * strain, 2)} percent.${
@@ -370,7 +370,7 @@ const replies = {
     page.readings = data.readings, page.show(sides);
     if (!data.broken) followRun(data);
     if (!data.failed && data.readings?.warning && !page.find('.says').innerText)
-      page.say('.says', `Warning: ${inPage(data.readings.warning)}.`);
+      page.say('.says', `Warning: ${data.readings.warning}.`);
     page.frameScene(), remember();
     if (data.failed && !page.failed && !page.wanted) page.fail(data);
     if (data.readings && data.asked === page.asked)

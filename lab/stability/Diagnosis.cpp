@@ -86,6 +86,11 @@ std::string Cure::options(const MethodEntry& before) const {
              : "--method " + std::string(method.info.name) + ' ' + step;
 }
 
+std::string Cure::in_words(const MethodEntry&) const {
+  return std::string(method.info.name) + " with a step of " +
+         CME212::short_text(1e3 * dt) + " ms";
+}
+
 bool is_flat(const Cloth& g) {
   const auto nodes = g.nodes();
   if (g.num_nodes() == 0) return false;
@@ -207,11 +212,11 @@ std::string Diagnosis::cause_text() const {
   return out.str();
 }
 
-std::string Diagnosis::remedy_text() const {
+std::string Diagnosis::remedy_text(CureName name) const {
   std::ostringstream out;
   out.precision(3);
   if (cure) {
-    out << cure->options(run.method);
+    out << ((*cure).*name)(run.method);
     if (trial.time >= run.time) {
       out << " works: a trial to t = " << trial.time
           << " s passed, and half of that step gives the same energy";
@@ -232,7 +237,7 @@ std::string Diagnosis::remedy_text() const {
   } else {
     out << "no remedy was found: trials of ";
     for (const Cure& c : failed)
-      out << (&c == &failed[0] ? "" : ", ") << c.options(run.method);
+      out << (&c == &failed[0] ? "" : ", ") << (c.*name)(run.method);
     out << " failed, too";
   }
   return out.str();

@@ -93,7 +93,11 @@ struct Cure {
   double dt;  ///< [s]
   /** As options of ./cloth; --method only if it differs from @a before. */
   std::string options(const MethodEntry& before) const;
+  /** For who has no command line: the method, too, and the step [ms]. */
+  std::string in_words(const MethodEntry& before) const;
 };
+/** How a door names a cure. */
+using CureName = std::string (Cure::*)(const MethodEntry& before) const;
 
 /** The result of running the scene from its start with a cure. */
 struct Attempt {
@@ -122,7 +126,7 @@ struct Diagnosis {
   std::vector<Cure> failed = {};  ///< cures that did not pass
 
   std::string cause_text() const;
-  std::string remedy_text() const;
+  std::string remedy_text(CureName name = &Cure::options) const;
 };
 
 /** Find out why @a run failed, and a cure. Tries shorter steps and other

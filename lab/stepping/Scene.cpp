@@ -285,18 +285,19 @@ void Scene::pull(std::optional<HandForce> hand) {
 
 // ------------------------------------------------------------------- Failure
 
-std::string Scene::missed_text() const {
+std::string Scene::missed_text(CureName name) const {
   if (watched().count() == 0) return "";
   using CME212::short_text;
   const auto& missed = watched().first();
   const double share =
       std::min(0.5, watched().inner().thinnest() / missed.length);
+  const MethodEntry& method = stepper_.method_entry();
   return "node " + std::to_string(missed.node) + " moved " +
          short_text(missed.length) +
          " m in the step to t = " + short_text(time()) +
          " s and would have tunnelled through an obstacle; it was put on the "
-         "surface. Use --dt " +
-         short_text(share * dt());
+         "surface. Use " +
+         (Cure{method, share * dt()}.*name)(method);
 }
 
 namespace {
@@ -364,9 +365,9 @@ Explanation Scene::explanation() const {
   }
 }
 
-std::string Scene::remedy() const {
+std::string Scene::remedy(CureName name) const {
   try {
-    return diagnosis().remedy_text();
+    return diagnosis().remedy_text(name);
   } catch (const Interrupted&) {
     return Explanation::interrupted;
   }

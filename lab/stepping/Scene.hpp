@@ -62,7 +62,7 @@ class Scene {
   /** Counts the nodes that it stopped from tunnelling through obstacles. */
   const WatchedConstraint& watched() const { return *built_.watched; }
   /** A warning about the first of them, right after its step; else "". */
-  std::string missed_text() const;
+  std::string missed_text(CureName name = &Cure::options) const;
 
   /** The number of changes of Model::at that are still to be made. Each is made
    * in the first state from its time on, at which a step ends. */
@@ -172,7 +172,7 @@ class Scene {
    * @pre and throws as diagnosis(), but not Interrupted */
   Explanation explanation() const;
   /** The remedy in words.  @pre and throws as explanation() */
-  std::string remedy() const;
+  std::string remedy(CureName name = &Cure::options) const;
   /** Spring evaluations of a trial: about a second. */
   static constexpr double trial_work = 3e8;
   /** About as many as @a steps of its method take; each of an implicit one,
