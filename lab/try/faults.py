@@ -24,6 +24,8 @@ CUTS_DT = (
     f"it cuts dt: a step of {HALF} s and one that is longer by 1 % end at the "
     "same place", "Advance by dt, whatever it is: who calls the step has to "
     "know how far it went.")
+SINGLE = ("it computes in single precision, with errors of about 1e-7",
+          "Use double, not float.")
 LOOKS = ("it looks at the springs itself, beside the forces: an implicit or "
          "position-based step")
 FRACTIONS = {(p / q): f"{p}/{q}" for q in (8, 6, 4, 3, 2) for p in range(1, q)}

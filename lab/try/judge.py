@@ -181,7 +181,9 @@ def identify(verdict: Verdict, same: Numbers, agree: Numbers) -> None:
             0, faults.IGNORES_DT if short else faults.CUTS_DT)
     t = verdict.table
     off = distance(*agree["slow"]) if t else math.inf
-    if t and off >= 1e-9 and "usual" in agree:
+    if t and "rounds" in agree:
+        verdict.faults.append(faults.SINGLE)
+    elif t and off >= 1e-9 and "usual" in agree:
         verdict.differs = differs(agree)
     raw = verdict.data["raw"]
     verdict.evaluations = verdict.calls
@@ -196,9 +198,7 @@ def identify(verdict: Verdict, same: Numbers, agree: Numbers) -> None:
         return
     if t is None or off >= 1e-9 and not verdict.differs:
         if not verdict.faults and off < 1e-5:
-            verdict.faults.append((
-                "it computes in single precision, with errors of about 1e-7",
-                "Use double, not float."))
+            verdict.faults.append(faults.SINGLE)
         elif not verdict.faults:
             verdict.is_a = faults.beside(
                 same["reads"], verdict.calls, verdict.half_calls)
