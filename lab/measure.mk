@@ -1,9 +1,9 @@
 # What measures, draws and searches: make help-lab. Results lie in the folder
 # results of their room; a quick run draws in $(B)/charts.
 
-.PHONY: adviser-suite charts crossings figures fuzz grids \
+.PHONY: adviser-suite charts compile_commands.json crossings figures fuzz grids \
         long-runs method-costs orders peers-chart peers-deps pictures \
-        speed stability stability-soak try
+        reference speed stability stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -29,6 +29,7 @@ help-lab:
 	@echo 'make page | page-serve | page-deps   the web page: lab/page/README.md'
 	@echo 'make python-deps python   the module for Python: docs/python.md'
 	@echo 'make site               the course and the laboratory as a web site'
+	@echo 'make reference          the contracts of all headers, by Doxygen'
 	@echo 'make grids | data/grid4.nodes   the grids; one of a million nodes'
 	@echo 'make fuzz               the parsers of meshes; RUNS=200000, needs clang'
 	@echo 'programs: cloth $(sort $(filter-out cloth,$(LAB_PROGRAMS)) $(call names,$(lab_others)))'
@@ -40,6 +41,22 @@ draw = python3 lab/charts/draw.py
 crossings: $(B)/cloth
 	@/usr/bin/python3 tests/crossings/crossings.py $< $(N:%=--scenes %) $(SEED:%=--seed %) \
 	  $(PROMISE:%=--promise %) $(FIELD:%=--field %)
+
+# How each source is compiled, for editors and clangd.
+compile_commands.json:
+	@$(MAKE) -Bn all cloth $(LAB_TESTS:%=$(B)/%) | python3 -c 'import json, os, re, sys; print(json.dumps( \
+	  [{"directory": os.getcwd(), "command": line.strip(), "file": found[1]} for line in sys.stdin \
+	  if (found := re.search(r" -c -o \S+ (\S+\.cpp)$$", line))], indent=1))' > $@
+
+# The contracts of all headers as a web site in build/reference.
+reference:
+	@tools/deps.sh reference
+	@mkdir -p $(B) && printf '%s\n' PROJECT_NAME=mass_spring QUIET=YES RECURSIVE=YES \
+	  'INPUT=. README.md' 'FILE_PATTERNS=*.hpp' EXCLUDE_PATTERNS='*/build/* */tests/* */course/*' \
+	  USE_MDFILE_AS_MAINPAGE=README.md JAVADOC_AUTOBRIEF=YES EXTRACT_ALL=YES SOURCE_BROWSER=YES \
+	  USE_MATHJAX=YES HAVE_DOT=NO GENERATE_LATEX=NO WARNINGS=NO OUTPUT_DIRECTORY=$(B) \
+	  HTML_OUTPUT=reference | doxygen -
+	@echo '$(B)/reference/index.html: the contract of each class and function'
 
 # All charts, and the figures of the text, from the CSV files as they are.
 figures:

@@ -30,9 +30,10 @@ packages() {
                  "libclang-rt-N-dev-wasm32 python3" ;;
     page)   packages web
             echo "libeigen3-dev libtomlplusplus-dev ffmpeg pandoc git" ;;
+    reference) echo "doxygen" ;;
     browser) echo "chromium-driver python3-selenium firefox-esr webkit2gtk-driver xvfb" ;;
     *) echo "deps: no group '$1'; there are: build window film lab draw test" \
-            "check python peers grade web page browser" >&2
+            "check python peers grade web page browser reference" >&2
        exit 2 ;;
   esac
 }
@@ -59,7 +60,7 @@ librapidcheck-dev - rapidcheck-devel
 libbenchmark-dev google-benchmark google-benchmark-devel
 xvfb - xorg-x11-server-Xvfb       xauth - xorg-x11-xauth
 xdotool - xdotool                 libseccomp-dev - libseccomp-devel
-pandoc pandoc pandoc
+pandoc pandoc pandoc              doxygen doxygen doxygen
 shellcheck shellcheck ShellCheck  pyflakes3 pyflakes python3-pyflakes
 mypy mypy python3-mypy
 "
