@@ -54,7 +54,7 @@ reference:
 	@mkdir -p $(B) && printf '%s\n' PROJECT_NAME=mass_spring QUIET=YES RECURSIVE=YES \
 	  'INPUT=. README.md' 'FILE_PATTERNS=*.hpp' EXCLUDE_PATTERNS='*/build/* */tests/* */course/*' \
 	  USE_MDFILE_AS_MAINPAGE=README.md JAVADOC_AUTOBRIEF=YES EXTRACT_ALL=YES SOURCE_BROWSER=YES \
-	  USE_MATHJAX=YES HAVE_DOT=NO GENERATE_LATEX=NO WARNINGS=NO OUTPUT_DIRECTORY=$(B) \
+	  USE_MATHJAX=YES HAVE_DOT=NO GENERATE_LATEX=NO WARN_LOGFILE=/dev/null OUTPUT_DIRECTORY=$(B) \
 	  HTML_OUTPUT=reference | doxygen -
 	@echo '$(B)/reference/index.html: the contract of each class and function'
 

@@ -215,30 +215,38 @@ std::string Diagnosis::cause_text() const {
 std::string Diagnosis::remedy_text(CureName name) const {
   std::ostringstream out;
   out.precision(3);
+  const auto list = [&](const std::vector<Cure>& cures) {
+    for (const Cure& c : cures)
+      out << (&c == &cures[0] ? "" : ", ") << (c.*name)(run.method);
+  };
   if (cure) {
-    out << ((*cure).*name)(run.method);
-    if (trial.time >= run.time) {
-      out << " works: a trial to t = " << trial.time
-          << " s passed, and half of that step gives the same energy";
-      if (!run.asked.empty())
-        out << " and " << run.asked;
-      else if (trial.apart == no_limit)
-        out << ", but other nodes are removed";
-      else if (trial.apart > Attempt::same_place)
-        out << ", but positions that differ by up to "
-            << CME212::percent(trial.apart) << " of the size of the cloth";
-      else
-        out << " and positions";
-    } else
-      out << " may work: a trial was stopped at t = " << trial.time
-          << " s, before it could fail";
-  } else if (failed.empty()) {
+    out << ((*cure).*name)(run.method)
+        << " works: a trial to t = " << trial.time
+        << " s passed, and half of that step gives the same energy";
+    if (!run.asked.empty())
+      out << " and " << run.asked;
+    else if (trial.apart == no_limit)
+      out << ", but other nodes are removed";
+    else if (trial.apart > Attempt::same_place)
+      out << ", but positions that differ by up to "
+          << CME212::percent(trial.apart) << " of the size of the cloth";
+    else
+      out << " and positions";
+  } else if (grows) {
+    out << "shorter steps do not help: trials of ";
+    list(failed);
+    out << " have positions that differ as much, and the energy of half of "
+           "their step";
+  } else if (failed.empty() && stopped.empty()) {
     out << "check its values";
   } else {
-    out << "no remedy was found: trials of ";
-    for (const Cure& c : failed)
-      out << (&c == &failed[0] ? "" : ", ") << (c.*name)(run.method);
-    out << " failed, too";
+    out << "no remedy was found: ";
+    if (!failed.empty())
+      out << "trials of ", list(failed), out << " failed, too";
+    if (!stopped.empty()) {
+      out << (failed.empty() ? "" : "; ") << "trials of ", list(stopped);
+      out << " were stopped before the time of the failure";
+    }
   }
   return out.str();
 }
@@ -334,18 +342,25 @@ bool same(const Cure& a, const Cure& b) {
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out) {
   constexpr std::size_t most = 10;
   Diagnosis d = {run, cause_of(run)};
+  std::size_t as_far = 0;  // trials with right energy and wrong positions
   for (const Cure& cure : candidates(d.cause, run)) {
     auto tried = [&](const Cure& other) { return same(cure, other); };
-    if (d.failed.size() == most) break;
-    if (std::ranges::any_of(d.failed, tried) || tried({run.method, run.dt}) ||
-        (d.cure && tried(*d.cure)))
+    if (d.failed.size() + d.stopped.size() == most) break;
+    if (std::ranges::any_of(d.failed, tried) ||
+        std::ranges::any_of(d.stopped, tried) || tried({run.method, run.dt}))
       continue;
     const Attempt trial = try_out(cure);
-    if (!trial.passed || trial.is_no_better(run))
+    if (trial.passed && trial.time < run.time) {
+      d.stopped.push_back(cure);
+    } else if (!trial.passed || trial.is_no_better(run)) {
       d.failed.push_back(cure);
-    else if (!d.cure || trial.time > d.trial.time)
+      as_far += trial.passed && run.asked.empty();
+      d.grows = as_far == 2 && d.failed.size() == 2;
+      if (d.grows) break;
+    } else {
       d.cure = cure, d.trial = trial;
-    if (d.cure && d.trial.time >= run.time) break;
+      break;
+    }
   }
   return d;
 }

@@ -121,9 +121,11 @@ using TryOut = std::function<Attempt(const Cure&)>;
 struct Diagnosis {
   FailedRun run;
   Cause cause;
-  std::optional<Cure> cure = {};  ///< one that passed a trial
-  Attempt trial = {};             ///< of the cure
-  std::vector<Cure> failed = {};  ///< cures that did not pass
+  std::optional<Cure> cure = {};   ///< one that passed a trial
+  Attempt trial = {};              ///< of the cure
+  std::vector<Cure> failed = {};   ///< cures that did not pass
+  std::vector<Cure> stopped = {};  ///< whose trial ended before the failure
+  bool grows = false;  ///< positions alone are wrong, and as much in two trials
 
   std::string cause_text() const;
   std::string remedy_text(CureName name = &Cure::options) const;
@@ -131,9 +133,10 @@ struct Diagnosis {
 
 /** Find out why @a run failed, and a cure. Tries shorter steps and other
  * methods, the cheapest that can hold first, until a trial passes the time of
- * the failure or 10 trials have failed. Every cure that it returns has passed:
- * its energy is that of half of its step, and so is the answer, if that was
- * wrong; if only positions were, it halves their difference. */
+ * the failure or 10 trials have not. The cure that it returns has passed: its
+ * energy is that of half of its step, and so is the answer, if that was wrong;
+ * if only positions were, it halves their difference, and two trials that do
+ * not are enough: small errors grow in such a motion. */
 Diagnosis diagnose(const FailedRun& run, const TryOut& try_out);
 
 /** A message about a failure: its sentences in their order. */
