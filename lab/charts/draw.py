@@ -14,7 +14,6 @@ import sys
 from typing import Callable, Iterator
 
 import decision
-import peers
 import precision
 import surveys
 from panels import find_matplotlib
@@ -30,7 +29,6 @@ CHARTS: dict[str, tuple[str, str, Callable[..., None]]] = {
                         surveys.grid_refinement),
     "stability_limits": ("charts", "stability_limits.csv", surveys.limits),
     "adviser": ("advice", "adviser.csv", surveys.adviser),
-    "peers": ("bench", "peers.csv", peers.peers),
 }
 
 
