@@ -1,9 +1,8 @@
 # What measures, draws and searches: make help-lab. Results lie in the folder
 # results of their room; a quick run draws in $(B)/charts.
 
-.PHONY: adviser-suite charts crossings figures fuzz grids \
-        long-runs method-costs orders pictures \
-        speed stability stability-soak try
+.PHONY: adviser-suite charts crossings figures fuzz grids method-costs orders \
+        pictures speed stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -12,14 +11,12 @@ help-lab:
 	@echo '                        minutes; all else'
 	@echo 'make try FILE=mine.hpp  what a step of your own is worth; STEP=my_step:'
 	@echo '                        lab/try/README.md'
-	@echo 'make charts             work and precision, energy: lab/charts/README.md;'
+	@echo 'make charts             work and precision: lab/charts/README.md;'
 	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
-	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
 	@echo 'make crossings          drawn scenes against an independent oracle;'
 	@echo '                        N=600 SEED=7 PROMISE=healthy FIELD=wind'
-	@echo 'make long-runs          averages over 60 s, past what can be predicted'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
@@ -62,21 +59,6 @@ try:
 charts: work_precision
 	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
-long-runs: cloth
-	@{ echo "# $(measured_on)" && lab/charts/long_runs.py $(B)/cloth; } \
-	  > $(B)/long_runs.csv
-	@mv $(B)/long_runs.csv lab/charts/results/long_runs.csv
-
-# Cells of an earlier program are measured anew.
-EFFORT = $(if $(QUICK),quick,full)
-SWEEP  = $(B)/stability/$(EFFORT)
-maps_in = $(if $(QUICK),$(B)/charts,lab/charts/results)
-stability: stability_map
-	@mkdir -p $(SWEEP) $(maps_in)
-	@find $(SWEEP) -name '*.csv' ! -newer $(B)/stability_map -delete
-	@$(B)/stability_map $(SWEEP) --effort $(EFFORT)
-	@cp $(SWEEP)/stability_*.csv $(maps_in)
-	@$(draw) stability_limits --folder $(maps_in)
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
 # SCENES random scenes, the methods in turn; and 1,000 by --dt auto.

@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from typing import Any, Callable
+from typing import Any
 
 import decision
 import panels
@@ -84,25 +84,6 @@ def coarsest(scene: str, method: str) -> Any:
 
 def floor(scene: str) -> float:
     return of(scene)[0].floor
-
-
-def long_run(method: str, column: str) -> float:
-    """A number of the table of long runs."""
-    return float(table("charts/results/long_runs.csv").where(
-        method=method)[0][column])
-
-
-def last_energy(method: str) -> tuple[float, float]:
-    """[J], and [s] of that."""
-    row = table("charts/results/energy.csv").where(method=method)[-1]
-    return float(row["energy"]), float(row["t"])
-
-
-def limits(pick: Callable[..., float], scale: str) -> float:
-    """The largest or least measured limit over another one."""
-    return pick(float(row["measured"]) / float(row[scale]) for row in
-                table("charts/results/stability_limits.csv").rows
-                if row["measured"])
 
 
 def bench(nodes: str, name: str, beside: str) -> float:
