@@ -2,8 +2,7 @@
 # results of their room; a quick run draws in $(B)/charts.
 
 .PHONY: adviser-suite charts compile_commands.json crossings figures fuzz grids \
-        long-runs method-costs orders peers-chart peers-deps pictures \
-        reference speed stability stability-soak try
+        method-costs orders pictures reference speed stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -12,19 +11,16 @@ help-lab:
 	@echo '                        minutes; all else'
 	@echo 'make try FILE=mine.hpp  what a step of your own is worth; STEP=my_step:'
 	@echo '                        lab/try/README.md'
-	@echo 'make charts             work and precision, energy: lab/charts/README.md;'
+	@echo 'make charts             work and precision: lab/charts/README.md;'
 	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
-	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
 	@echo 'make crossings          drawn scenes against an independent oracle;'
 	@echo '                        N=600 SEED=7 PROMISE=healthy FIELD=wind'
-	@echo 'make long-runs          averages over 60 s, past what can be predicted'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
-	@echo 'make peers-deps peers-chart   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
 	@echo 'make page | page-serve | page-deps   the web page: lab/page/README.md'
 	@echo 'make python-deps python   the module for Python: docs/python.md'
@@ -80,21 +76,6 @@ try:
 charts: work_precision
 	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
-long-runs: cloth
-	@{ echo "# $(measured_on)" && lab/charts/long_runs.py $(B)/cloth; } \
-	  > $(B)/long_runs.csv
-	@mv $(B)/long_runs.csv lab/charts/results/long_runs.csv
-
-# Cells of an earlier program are measured anew.
-EFFORT = $(if $(QUICK),quick,full)
-SWEEP  = $(B)/stability/$(EFFORT)
-maps_in = $(if $(QUICK),$(B)/charts,lab/charts/results)
-stability: stability_map
-	@mkdir -p $(SWEEP) $(maps_in)
-	@find $(SWEEP) -name '*.csv' ! -newer $(B)/stability_map -delete
-	@$(B)/stability_map $(SWEEP) --effort $(EFFORT)
-	@cp $(SWEEP)/stability_*.csv $(maps_in)
-	@$(draw) stability_limits --folder $(maps_in)
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
 # SCENES random scenes, the methods in turn; and 1,000 by --dt auto.
@@ -140,19 +121,6 @@ measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
   $$($(CXX) --version | head -n 1), commit \
   $$(git diff --quiet HEAD -- . ':!*/results/*' || printf 'after ')$$(git \
   describe --always)
-
-# Other libraries beside ours: lab/bench/peers/README.md
-peers := lab/bench/peers
-$(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
-  -lsundials_cvode -lsundials_arkode -lsundials_nvecserial \
-  -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas))
-
-peers-deps:
-	@tools/deps.sh peers
-peers-chart: $(B)/peers
-	@{ echo "# $(measured_on)" && $(B)/peers; } > $(B)/peers.csv
-	@mv $(B)/peers.csv lab/bench/results/peers.csv
-	@$(draw) peers
 
 # ---- Grids and pictures
 

@@ -104,7 +104,7 @@ TEST(Percent, IsReadAndWritten) {
   m.tolerance = 0.7, m.percent = true;
   const std::string text = to_scene_file(m);
   EXPECT_TRUE(has(text, "tolerance = \"0.7%\""));
-  const Model again = read_model("s", "s", text);
+  const Model again = StoredScene{"s", "s", text.c_str()}.model();
   EXPECT_TRUE(again.percent);
   EXPECT_EQ(again.tolerance, 0.7);
 }

@@ -263,28 +263,6 @@ TEST_F(WorkPrecision, WritesATableThatIsWholeAndTrue) {
   }
 }
 
-TEST_F(WorkPrecision, FollowsTheEnergy) {
-  ASSERT_EQ(
-      run_program("--energy --methods verlet,forward-euler --out " + csv()), 0)
-      << err();
-  std::map<std::string, std::vector<Row>> of;
-  for (Row& row : rows()) of[row["method"]].push_back(row);
-  auto &kept = of["verlet"], &grown = of["forward-euler"];
-  ASSERT_TRUE(kept.size() > 400 && grown.size() > 10);
-  for (Row& row : kept) {
-    EXPECT_LT(std::abs(std::stod(row["energy [J]"])), 0.1);
-    EXPECT_EQ(row["status"], "ok");
-  }
-  EXPECT_NEAR(std::stod(kept.back()["t [s]"]), 5, 0.02);
-  for (auto* rows : {&kept, &grown}) {
-    EXPECT_EQ(rows->front()["t [s]"], "0");
-    EXPECT_EQ(rows->front()["energy [J]"], "0");
-  }
-  EXPECT_GT(std::stod(grown.back()["energy [J]"]), 1);
-  EXPECT_EQ(grown.back()["status"], "diverged");
-  EXPECT_EQ(grown[grown.size() - 2]["status"], "ok");
-}
-
 TEST_F(WorkPrecision, RefinesTheGridTheStepOrBoth) {
   ASSERT_EQ(run_program("--grid-refinement --quick --quiet --out " + csv()), 0)
       << err();
@@ -318,7 +296,6 @@ TEST_F(WorkPrecision, RefusesWhatCantBeAndLeavesNoFile) {
   refused("--methods verlet,magic", "--methods: magic not in {");
   refused("--repeats 0", "--repeats: Value 0 not in range");
   EXPECT_TRUE(has(err(), "1000"));  // the bound
-  refused("--energy --grid-refinement", "--grid-refinement");
   EXPECT_EQ(run_program("--quick --scenes chain --out no/such"), 2);
 }
 

@@ -215,24 +215,6 @@ same_grids() {
       cmp "$file" "build/check/grids/${file##*/}" || return 1
   done
 }
-# What stands beside other libraries compiles, where these are installed.
-peers() {
-  local program out eigen
-  eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
-  for program in lab/bench/peers/*.cpp; do
-    # shellcheck disable=SC2046,SC2086  # a list of words
-    if out=$(g++ -std=c++20 -Wall -Wextra $(strict g++) -fopenmp -fsyntax-only -I. \
-      $eigen "$program" 2>&1); then
-      echo "ok $program"
-    else
-      out=$(grep -m 1 'is missing: make peers-deps' <<<"$out" || echo "$out")
-      case $out in
-        *' missing: make peers-deps'*) echo "skipped: $program ${out##*error }" ;;
-        *) echo "$out"; return 1 ;;
-      esac
-    fi
-  done
-}
 # Programs and tests have no warning of clang++, which compiles what threads()
 # runs, and only reads the rest; nor, in another folder, by other VARIABLES.
 clang() {  # FOLDER VARIABLE=VALUE...
@@ -256,7 +238,7 @@ threads() {
     "${three[@]}" build/check/clang/test_flat_flow --gtest_filter='*Parts*'
 }
 programs() {
-  in_folder . cloth work_precision stability_map bench examples
+  in_folder . cloth work_precision bench examples
 }
 # Does advice still do what it did? How often it is right is in
 # lab/advice/README.md, from more scenes.
@@ -339,10 +321,6 @@ of_advice() { turn advice "$limit" advice; }
 of_clang() { turn clang "$long" clang read; }
 of_bare() { turn bare "$long" clang bare VIEWER=0 OPENMP=0; }
 of_threads() { turn threads "$long" threads; }
-of_figures() {
-  turn charts    "$limit" in_folder . -s charts QUICK=1
-  turn stability "$limit" in_folder . -s stability QUICK=1
-}
 # All that needs nothing of each other; the longest first.
 turns() {
   turn kit       "$long"  make --no-print-directory kit-check EVERY=64 \
@@ -352,7 +330,8 @@ turns() {
   in_turn of_clang of_bare of_threads
   turn python    "$limit" python_module
   turn pages     "$long"  env EVERY=2 FIRST=$((turn_of % 2)) tools/check_pages.sh
-  in_turn of_advice of_figures
+  in_turn of_advice
+  turn charts    "$limit" in_folder . -s charts QUICK=1
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh
   turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \
@@ -364,7 +343,6 @@ turns() {
   turn headers   "$limit" env CXX=clang++ EVERY=8 FIRST=$((turn_of % 8)) \
     tools/check_headers.sh
   turn lanes     "$limit" tools/check_lanes.sh
-  turn peers     "$limit" peers
   turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000
   turn submit    "$limit" tools/test_submit.sh
   turn grids     "$limit" same_grids

@@ -5,10 +5,8 @@ import io
 import json
 import pathlib
 import re
-import sys
 import tempfile
 import unittest
-import unittest.mock
 import zipfile
 
 import diagnosis
@@ -22,9 +20,6 @@ import sandbox
 import submission
 import tasks
 import years
-
-sys.path.append(str(once.ROOT / "course/autograder"))
-import classroom50      # noqa: E402: it stands apart from the kit
 
 
 class Inbox(unittest.TestCase):
@@ -400,37 +395,6 @@ class Reports(unittest.TestCase):
                                  in data["tests"]), outputs)
         self.assertEqual(data["output"], report.RECEIVED)
         self.check_gradescope(json.loads(report.refused("no")))
-
-    def test_classroom_50(self):
-        """As the page Advanced-Autograding of its wiki has it."""
-        data = json.loads(report.as_json(self.report))
-        told = {"CLASSROOM": "c", "ASSIGNMENT": "a", "OWNER": "ann",
-                "SUBMISSION_TAG": "submit/1", "COMMIT_URL": "https://c",
-                "RELEASE_URL": "https://r", "ASSIGNMENT_TYPE": "group"}
-        with unittest.mock.patch.dict("os.environ", told, clear=True):
-            made = {feedback: classroom50.result(data, feedback, 86400)
-                    for feedback in report.FEEDBACK}
-        for result in made.values():
-            self.assertEqual(
-                {key: value for key, value in result.items()
-                 if type(value) is str}, {
-                    "schema": "classroom50/result/v1", "classroom": "c",
-                    "assignment": "a", "assignment_type": "group",
-                    "owner": "ann", "submission": "submit/1",
-                    "commit": "https://c", "release": "https://r",
-                    "review": "https://c", "datetime": "1970-01-02T00:00:00Z"})
-            for key, of in (("score", "score"), ("max-score", "max-score")):
-                self.assertIs(type(result[key]), int)
-                self.assertEqual(result[key], sum(
-                    test[of] for test in result["tests"]))
-        tests = made["all"]["tests"]
-        self.assertEqual([test["passed"] for test in tests].count(False), 1)
-        self.assertEqual(made["all"]["score"],
-                         self.report.of - self.lost.points)
-        self.assertEqual(made["all"]["max-score"], self.report.of)
-        self.assertIn("got <&>.", tests[4]["output"])
-        self.assertNotIn("output", made["names"]["tests"][4])
-        self.assertEqual(made["none"]["tests"], [])
 
     def check_gradescope(self, data):
         """As Gradescope's page "Autograder Specifications" has it."""

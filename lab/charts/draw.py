@@ -14,7 +14,6 @@ import sys
 from typing import Callable, Iterator
 
 import decision
-import peers
 import precision
 import surveys
 from panels import find_matplotlib
@@ -25,12 +24,9 @@ CHARTS: dict[str, tuple[str, str, Callable[..., None]]] = {
     "work_precision": ("charts", "work_precision.csv",
                        precision.work_precision),
     "decision": ("charts", "work_precision.csv", decision.decision),
-    "energy": ("charts", "energy.csv", precision.energy),
     "grid_refinement": ("charts", "grid_refinement.csv",
                         surveys.grid_refinement),
-    "stability_limits": ("charts", "stability_limits.csv", surveys.limits),
     "adviser": ("advice", "adviser.csv", surveys.adviser),
-    "peers": ("bench", "peers.csv", peers.peers),
 }
 
 

@@ -21,8 +21,6 @@ csv=$to/work_precision.csv
   ${SCENE:+--scenes "$SCENE"}
 draw work_precision decision
 [ -z "$SCENE" ] || exit 0
-"$build/work_precision" ${options[@]+"${options[@]}"} --energy --out "$to/energy.csv"
-draw energy
 [ -z "$METHODS" ] || exit 0
 "$build/work_precision" ${options[@]+"${options[@]}"} --grid-refinement \
   --out "$to/grid_refinement.csv"

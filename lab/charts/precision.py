@@ -1,5 +1,5 @@
 """Time against error, with the methods that are the cheapest at some error in
-color and a bar along the lower edge that says where; energy against time."""
+color and a bar along the lower edge that says where."""
 from __future__ import annotations
 
 import math
@@ -11,9 +11,6 @@ from panels import (BEHIND, DASHES, LETTER, Axis, Curve, Panel, Picture,
 from results import (COARSE, TRUSTED, Cost, Run, Segment, Table, believed,
                      by_method, runs, winners)
 
-FAMILIES = (("splitting", "splitting methods"),
-            ("runge-kutta", "Runge-Kutta(-Nystroem)"),
-            ("implicit", "implicit and position-based"))
 NORMS = {"rms position": "RMS error of the positions [m]",
          "center of mass and energy/(M g)":
          "error of center of mass and energy/(M g) [m]"}
@@ -108,49 +105,4 @@ def work_precision(csv: pathlib.Path, out: pathlib.Path, scene: str) -> None:
     if never:
         picture.text(20, 14, f"{', '.join(never)}: no step succeeded.")
     picture.draw(panel, ylabel="time of a run [s]", xlabel=NORMS[norm])
-    picture.finish()
-
-
-def energy(csv: pathlib.Path, out: pathlib.Path) -> None:
-    """How far the energy has been off so far against time, a panel for a
-    family."""
-    table = Table(csv)
-    look = styles()
-    curves: dict[str, Any] = {}
-    worst: dict[str, float] = {}
-    for row in table.rows:
-        m, t, off = row["method"], float(row["t"]), abs(float(row["energy"]))
-        c = curves.setdefault(m, Curve(m, [], look[m][0], 0, m,
-                                       dash=DASHES[look[m][1]]))
-        if off > 0 and (not c.points or off > 1.05 * c.points[-1][1]):
-            c.points.append((t, min(off, 20)))
-        c.end, worst[m] = t, max(worst.get(m, 0), off)
-        if row["status"] != "ok":
-            c.label = m + " diverges"
-    for c in curves.values():
-        c.points.append((c.end, c.points[-1][1]))
-    about, _, rest = table.note("scene").partition("; ")
-    words = []
-    for who, pick, how, chosen in (
-            ("splittings at most", max, "",
-             lambda m: look[m][1] == "splitting"),
-            ("rk4", max, "", lambda m: m == "rk4"),
-            ("implicit", min, " or more",
-             lambda m: look[m][1] == "implicit")):
-        all_of = [worst[m] for m in worst if chosen(m)]
-        if all_of:
-            words.append(f"{who} {pick(all_of):.2g} J{how}")
-    picture = Picture(out, 800, 456, "Energy error: " + ", ".join(words),
-                      f"{about}: the true energy stays at 0 J. A curve: the "
-                      "largest distance from it up to that time.\n" +
-                      rest[:1].upper() + rest[1:] + ".", table.footer())
-    x, y = Axis(0, 6.8, False), Axis(1e-6, 300)  # names stand behind the end
-    for k, (family, title) in enumerate(FAMILIES):
-        own = [c for m, c in curves.items() if look[m][1] == family]
-        panel = Panel(72 + 240 * k, 82, 302 + 240 * k, 362, x, y, title, own,
-                      [c for c in curves.values() if c not in own],
-                      at_end=True)
-        picture.draw(
-            panel, xlabel="time [s]", xticks=range(6), ynames=k == 0,
-            ylabel="" if k else "largest error of the energy so far [J]")
     picture.finish()

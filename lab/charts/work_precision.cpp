@@ -4,7 +4,7 @@
  *
  *   build/work_precision --out FILE.csv
  *   build/work_precision --quick --scenes grid0,chain --methods verlet,pefrl
- *   build/work_precision --grid-refinement     # or --energy
+ *   build/work_precision --grid-refinement
  *
  * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
  * input that can't be used, or an output that can't be written. */
@@ -30,7 +30,6 @@
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/StiffSplit.hpp"
 #include "lab/run/Progress.hpp"
-#include "lab/stability/Guard.hpp"
 #include "lab/stability/Spectrum.hpp"
 
 using namespace lab;
@@ -44,8 +43,7 @@ struct Options {
   std::vector<std::string> scenes, methods;
   std::string out;
   int repeats = 7;
-  bool grid_refinement = false, energy = false;
-  bool quick = false, quiet = false;
+  bool grid_refinement = false, quick = false, quiet = false;
 };
 
 /** The limits of a ladder of steps. */
@@ -200,7 +198,7 @@ void work_precision(const std::vector<Problem>& problems,
   progress.end();
 }
 
-// -------------------------------------------------------------- Other charts
+// ----------------------------------------------------------- Grid refinement
 
 /** The height of the center of mass of the assignment's cloth at 0.25 s, by
  * Verlet: its error when the grid, the step, or both are refined. Against the
@@ -242,47 +240,6 @@ void grid_refinement(const Options& o, std::ostream& out, Progress& progress) {
   progress.end();
 }
 
-/** Total energy against time on the 5 x 5 cloth without drag, for 5 s: at equal
- * cost, dt omega = 1/2 a sweep, for explicit methods; at 5 times Verlet's
- * limit for those without one; at a tolerance of 1e-4 m for the adaptive. */
-void energy(const std::vector<const MethodEntry*>& chosen, std::ostream& out) {
-  Problem p = grid_problem("grid0", "5 x 5 cloth without drag", 5, 5);
-  p.damping = 0;
-  write_head(out, "total energy against time");
-  out << "# scene: " << p.about
-      << "; explicit methods at equal cost, omega dt = half the force "
-         "evaluations of a step; the others omega dt = 10\n"
-      << "method,t [s],energy [J],status\n";
-  for (const MethodEntry* entry : chosen) {
-    if (entry->info.multirate) continue;  // it is verlet here
-    Start s(p);
-    const double omega = omega_safe(s.cloth, s.force, s.constraint);
-    auto method = entry->make();
-    double dt = entry->info.limit == no_limit ? 10 / omega
-                                              : entry->info.sweeps / 2. / omega;
-    if (entry->info.adaptive) method->set_tolerance(1e-4), dt = 0.02;
-    DivergenceGuard guard(s.cloth, p.gravity, dt);
-    const auto steps = static_cast<long long>(std::ceil(p.t_end / dt));
-    const long long every = std::max(1LL, steps / 500);
-    dt = p.t_end / double(steps);
-    const char* status = "ok";
-    for (long long n = 0; n <= steps; ++n) {
-      if (n % every == 0 || *status != 'o')
-        out << entry->info.name << ',' << cell(double(n) * dt) << ','
-            << cell(kinetic_energy(s.cloth) + s.force.energy(s.cloth)) << ','
-            << status << '\n';
-      if (*status != 'o') break;
-      try {
-        method->step(s.cloth, double(n) * dt, dt, s.force, s.constraint);
-        if (!guard.accept(s.cloth)) status = "diverged";
-      } catch (const std::exception&) {
-        status = "failed";
-      }
-      if (*status != 'o') guard.restore(s.cloth);
-    }
-  }
-}
-
 // -------------------------------------------------------------------- Options
 
 /** Read the command line.  @return the exit status to end with, or -1 */
@@ -303,10 +260,8 @@ int parse(int argc, char** argv, Options& o) {
       ->check(CLI::Range(1, 1000));
   app.add_option("--out", o.out, "file to write; the terminal if none")
       ->type_name("FILE");
-  auto* grid = app.add_flag("--grid-refinement", o.grid_refinement,
-                            "refine the grid, the step, or both instead");
-  app.add_flag("--energy", o.energy, "energy against time instead")
-      ->excludes(grid);
+  app.add_flag("--grid-refinement", o.grid_refinement,
+               "refine the grid, the step, or both instead");
   app.add_flag("--quiet", o.quiet, "print nothing but errors");
   try {
     app.parse(argc, argv);
@@ -333,8 +288,6 @@ void run(Options o) {
   Progress progress(o.quiet || !file);
   if (o.grid_refinement)
     grid_refinement(o, out, progress);
-  else if (o.energy)
-    energy(chosen, out);
   else
     work_precision(problems, chosen, o, out, progress);
   if (file) file->commit();

@@ -101,10 +101,6 @@ Model load_model(const std::string& file) {
 Model load_open_model(const std::string& file) {
   return model_in(file, scene_name(file), scene_text(file), true);
 }
-Model read_model(const std::string& file, const std::string& name,
-                 const std::string& text) {
-  return model_in(file, name, text, false);
-}
 Model StoredScene::model() const { return model_in(name, name, text, true); }
 
 const StoredScene& stored_scene(std::string_view name) {

@@ -54,10 +54,6 @@ void check_has_cloth(const Model& m);
  * Throws SceneFileError */
 Model load_model(const std::string& file);
 Model load_open_model(const std::string& file);
-/** The scene @a name in @a text, the content of @a file.
- * Throws SceneFileError */
-Model read_model(const std::string& file, const std::string& name,
-                 const std::string& text);
 
 /** @a m as a scene file: the help of each field as a comment, and its value.
  * Fields that are not set, and those of the names @a without, are left out;
