@@ -2,7 +2,8 @@
 # results of their room; a quick run draws in $(B)/charts.
 
 .PHONY: adviser-suite charts compile_commands.json crossings figures fuzz grids \
-        method-costs orders pictures reference speed stability-soak try
+        method-costs orders peers-chart peers-deps pictures reference speed \
+        stability stability-soak try
 
 help-lab:
 	@echo 'make cloth              the laboratory: ./cloth --help; lab/README.md'
@@ -21,6 +22,7 @@ help-lab:
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
 	@echo 'make adviser-suite      how often --advise is right: lab/advice/README.md'
+	@echo 'make peers-deps peers-chart   other libraries beside ours'
 	@echo 'make pictures           the pictures of the documents'
 	@echo 'make page | page-serve | page-deps   the web page: lab/page/README.md'
 	@echo 'make python-deps python   the module for Python: docs/python.md'
@@ -121,6 +123,19 @@ measured_on = $$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -n 1), \
   $$($(CXX) --version | head -n 1), commit \
   $$(git diff --quiet HEAD -- . ':!*/results/*' || printf 'after ')$$(git \
   describe --always)
+
+# Other libraries beside ours: lab/bench/peers/README.md
+peers := lab/bench/peers
+$(eval $(call program,$(B)/peers,$(B),$(peers)/peers.cpp,$(speed), \
+  -lsundials_cvode -lsundials_arkode -lsundials_nvecserial \
+  -lsundials_sunnonlinsolfixedpoint -lgsl -lgslcblas))
+
+peers-deps:
+	@tools/deps.sh peers
+peers-chart: $(B)/peers
+	@{ echo "# $(measured_on)" && $(B)/peers; } > $(B)/peers.csv
+	@mv $(B)/peers.csv lab/bench/results/peers.csv
+	@$(draw) peers
 
 # ---- Grids and pictures
 

@@ -215,6 +215,24 @@ same_grids() {
       cmp "$file" "build/check/grids/${file##*/}" || return 1
   done
 }
+# What stands beside other libraries compiles, where these are installed.
+peers() {
+  local program out eigen
+  eigen=$(pkg-config --cflags eigen3 | sed 's/-I/-isystem/g')
+  for program in lab/bench/peers/*.cpp; do
+    # shellcheck disable=SC2046,SC2086  # a list of words
+    if out=$(g++ -std=c++20 -Wall -Wextra $(strict g++) -fopenmp -fsyntax-only -I. \
+      $eigen "$program" 2>&1); then
+      echo "ok $program"
+    else
+      out=$(grep -m 1 'is missing: make peers-deps' <<<"$out" || echo "$out")
+      case $out in
+        *' missing: make peers-deps'*) echo "skipped: $program ${out##*error }" ;;
+        *) echo "$out"; return 1 ;;
+      esac
+    fi
+  done
+}
 # Programs and tests have no warning of clang++, which compiles what threads()
 # runs, and only reads the rest; nor, in another folder, by other VARIABLES.
 clang() {  # FOLDER VARIABLE=VALUE...
@@ -343,6 +361,7 @@ turns() {
   turn headers   "$limit" env CXX=clang++ EVERY=8 FIRST=$((turn_of % 8)) \
     tools/check_headers.sh
   turn lanes     "$limit" tools/check_lanes.sh
+  turn peers     "$limit" peers
   turn fuzz      "$limit" in_folder . -s fuzz RUNS=100000
   turn submit    "$limit" tools/test_submit.sh
   turn grids     "$limit" same_grids

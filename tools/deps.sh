@@ -22,6 +22,7 @@ packages() {
     python) echo "python3-numpy python3-dev python3-pybind11 python3-pytest" \
                  "python3-scipy python3-setuptools python3-matplotlib mypy" \
                  "python3-build python3-pip python3-venv python3-wheel" ;;
+    peers)  echo "libsundials-dev libboost-dev libgsl-dev" ;;
     grade)  echo "g++ git make python3 libseccomp-dev"
             python3 -c 'import tomllib' 2>/dev/null || echo "python3-tomli" ;;
     web)    [ ! -d course/kit ] || packages grade   # it compiles in the jail
@@ -32,7 +33,7 @@ packages() {
     reference) echo "doxygen" ;;
     browser) echo "chromium-driver python3-selenium firefox-esr webkit2gtk-driver xvfb" ;;
     *) echo "deps: no group '$1'; there are: build window film lab draw test" \
-            "check python grade web page browser reference" >&2
+            "check python peers grade web page browser reference" >&2
        exit 2 ;;
   esac
 }

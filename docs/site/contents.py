@@ -14,7 +14,8 @@ CONTENTS: list[tuple[str, list[str | tuple[str, str]]]] = [
         "lab/README.md", "lab/methods/README.md", "lab/stability/README.md",
         "lab/scenes/README.md", "lab/advice/README.md", "lab/charts/README.md",
         "lab/try/README.md", "lab/fast/README.md", "lab/bench/README.md",
-        "lab/page/README.md", "course/web/README.md",
+        "lab/bench/peers/README.md", "lab/page/README.md",
+        "course/web/README.md",
         "docs/examples/README.md", "docs/rest.md", "docs/python.md"]),
     ("To teach and to contribute", [
         "course/README.md", "course/elsewhere.md", "course/teaching.md",

@@ -14,6 +14,7 @@ import sys
 from typing import Callable, Iterator
 
 import decision
+import peers
 import precision
 import surveys
 from panels import find_matplotlib
@@ -27,6 +28,7 @@ CHARTS: dict[str, tuple[str, str, Callable[..., None]]] = {
     "grid_refinement": ("charts", "grid_refinement.csv",
                         surveys.grid_refinement),
     "adviser": ("advice", "adviser.csv", surveys.adviser),
+    "peers": ("bench", "peers.csv", peers.peers),
 }
 
 

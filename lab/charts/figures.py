@@ -10,13 +10,15 @@ from __future__ import annotations
 
 import argparse
 import re
+import statistics
 import sys
-from typing import Any
+from typing import Any, Callable
 
 import decision
 import panels
-from results import (ROOT, Run, Table, by_method, cheapest, ns_a_node, runs,
-                     tied)
+import peers
+from results import (ROOT, Run, Table, by_method, cheapest, cost_at, ns_a_node,
+                     runs, tied)
 
 sys.path.append(str(ROOT / "lab/advice"))
 import suite
@@ -40,8 +42,10 @@ def methods() -> int:
 
 
 def of(scene: str, method: str | None = None) -> list[Run]:
-    """Runs of work_precision.csv."""
-    rows = table("charts/results/work_precision.csv").where(scene=scene)
+    """Runs of work_precision.csv; of peers.csv if scene is 'peers NAME'."""
+    rows = (table("bench/results/peers.csv").where(problem=scene.split()[1])
+            if scene.startswith("peers ") else
+            table("charts/results/work_precision.csv").where(scene=scene))
     return [r for r in runs(rows) if method in (None, r.method)]
 
 
@@ -84,6 +88,32 @@ def coarsest(scene: str, method: str) -> Any:
 
 def floor(scene: str) -> float:
     return of(scene)[0].floor
+
+
+def limits(pick: Callable[..., float], scale: str) -> float:
+    """The largest or least measured limit over another one."""
+    return pick(float(row["measured"]) / float(row[scale]) for row in
+                table("charts/results/stability_limits.csv").rows
+                if row["measured"])
+
+
+def call(method: str) -> float:
+    """The median time of a force evaluation of peers.csv, all told [us]."""
+    return statistics.median(1e6 * r.seconds / r.evaluations
+                             for r in of("peers grid1", method))
+
+
+def cost_of(problem: str, error: float, method: str) -> float | None:
+    """Force evaluations at an error, as the chart of peers has them."""
+    return cost_at(error, of(f"peers {problem}", method),
+                   lambda r: r.evaluations)
+
+
+def lead(cost: str) -> float:
+    """By how much a library costs less than ours at most [%]."""
+    return 100 * max(peers.advantage(of(f"peers {problem}"),
+                                     lambda r: getattr(r, cost))[0]
+                     for problem in ("grid1", "curtain"))
 
 
 def bench(nodes: str, name: str, beside: str) -> float:

@@ -87,7 +87,7 @@ class Run:
     """A run of a method on a problem; what is not known is 0."""
     method: str
     dt: float         # [s]
-    tolerance: float  # [m], of a method with error control
+    tolerance: float  # [m], of a method with error control; or its step, too
     share: float      # dt/(largest stable step)
     evaluations: float
     seconds: float    # least of the repeats: noise only adds
@@ -110,14 +110,14 @@ class Run:
 
 
 def runs(rows: list[dict[str, str]]) -> list[Run]:
-    """The runs in rows of work_precision.csv."""
+    """The runs in rows of work_precision.csv or of peers.csv."""
     def number(row, name):
         return float(row.get(name) or 0)
     return [Run(row["method"], number(row, "dt"),
-                number(row, "tolerance"), number(row, "dt/limit"),
-                number(row, "sweeps"), number(row, "seconds_min"),
-                number(row, "error"), number(row, "floor"),
-                row["status"] == "ok",
+                number(row, "tolerance") or number(row, "parameter"),
+                number(row, "dt/limit"), number(row, "sweeps"),
+                number(row, "seconds_min"), number(row, "error"),
+                number(row, "floor"), row.get("status", "ok") == "ok",
                 number(row, "seconds_median"),
                 tuple(number(row, n) for n in ("systems", "products",
                                                "factors")),
@@ -147,6 +147,21 @@ def reliable(of: list[Run]) -> list[tuple[float, Run]]:
         worst = max(worst, run.error, TRUSTED * run.floor)
         kept.append((worst, run))
     return kept[::-1]
+
+
+def cost_at(error: float, of: list[Run], cost: Cost) -> float | None:
+    """What runs of one method cost at an error, on the line between the two
+    next to it in a log-log chart; None if none is as exact. Down to TRUSTED
+    floors only. @a cost: a function of a run."""
+    after = None
+    for kept, run in reversed(reliable(of)):
+        if kept > error:
+            if after is None:
+                return None
+            share = math.log(kept / error) / math.log(kept / after[0])
+            return cost(run) * (cost(after[1]) / cost(run)) ** share
+        after = kept, run
+    return cost(after[1]) if after else None
 
 
 def cheapest(error: float, some: list[Run], cost: Cost) -> Any:

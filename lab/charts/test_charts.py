@@ -10,6 +10,7 @@ from itertools import chain, combinations
 
 import decision
 import panels
+import peers
 from results import (COARSE, ROOT, TRUSTED, Run, Table, cheapest,
                      runs, tied, winners)
 
@@ -141,6 +142,36 @@ class Measured(unittest.TestCase):
         self.assertEqual(tied(1e-5, some, seconds), [])
 
 
+class Libraries(unittest.TestCase):
+    """Ours costs error^-1/2, the library's a power of its own."""
+    OURS = [run("a", 1e-3, 1), run("a", 1e-5, 10)]
+
+    def test_where_a_library_leads_most(self):
+        theirs = [run("gsl-b", 1e-3, 1.2), run("gsl-b", 1e-5, 5)]
+        share, error, method = peers.advantage(self.OURS + theirs, seconds)
+        self.assertEqual(method, "gsl-b")
+        self.assertLess(abs(math.log10(error / 1e-5)), 0.06)
+        self.assertAlmostEqual(share, 0.5, delta=0.01)
+
+    def test_a_library_that_never_leads(self):
+        theirs = [run("gsl-b", 1e-3, 1.01), run("gsl-b", 1e-5, 10.1)]
+        self.assertEqual(peers.advantage(self.OURS + theirs, seconds)[0], 0)
+
+    def test_a_library_is_its_best_method_where_it_reaches_the_error(self):
+        theirs = [run("cvode-b", 1e-3, 4), run("arkode-c", 1e-3, 2),
+                  run("arkode-c", 1e-5, 30), run("gsl-d", 1e-3, 3)]
+        for error, wanted in ((1e-3, {"SUNDIALS": 2, "GSL": 3}),
+                              (1e-5, {"SUNDIALS": 3})):
+            found = peers.factors(error, self.OURS + theirs, seconds)
+            self.assertEqual(found.keys(), wanted.keys())
+            for who, factor in wanted.items():
+                self.assertAlmostEqual(found[who], factor, places=6)
+
+    def test_a_run_without_a_time_has_no_curve_of_time(self):
+        theirs = [run("gsl-b", error, 0, 9) for error in (1e-3, 1e-5)]
+        self.assertEqual(peers.factors(1e-4, self.OURS + theirs, seconds), {})
+
+
 class Pictures(unittest.TestCase):
     pictures: dict[str, str] = {}
 
@@ -151,7 +182,7 @@ class Pictures(unittest.TestCase):
         cls.pictures = {path.name: path.read_text() for path in found}
 
     def test_texts_have_11_pixels_where_a_picture_has_800(self):
-        self.assertGreater(len(self.pictures), 5)
+        self.assertGreater(len(self.pictures), 11)
         for name, svg in self.pictures.items():
             width = float(re.findall('viewBox="0 0 ([0-9.]+)', svg)[0])
             least = min(map(float, re.findall(
