@@ -11,6 +11,7 @@ OPENMP := $(OPENMP)
 # The programs: NAME is built as $(B)/NAME from the file.
 lab_main   := lab/run/cloth.cpp \
               lab/page/page_positions.cpp lab/charts/work_precision.cpp \
+              lab/charts/stability_map.cpp \
               $(wildcard lab/bench/bench*.cpp)
 lab_others := $(wildcard docs/examples/*.cpp)
 lab_lib    := $(filter-out $(lab_main) lab/page/wasi.cpp \

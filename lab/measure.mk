@@ -15,6 +15,7 @@ help-lab:
 	@echo 'make charts             work and precision: lab/charts/README.md;'
 	@echo '                        QUICK=1, SCENE=grid1, METHODS=verlet,pefrl'
 	@echo 'make figures            draws all charts, corrects the numbers in the text'
+	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
 	@echo 'make crossings          drawn scenes against an independent oracle;'
 	@echo '                        N=600 SEED=7 PROMISE=healthy FIELD=wind'
@@ -78,6 +79,17 @@ try:
 charts: work_precision
 	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
+
+# Cells of an earlier program are measured anew.
+EFFORT = $(if $(QUICK),quick,full)
+SWEEP  = $(B)/stability/$(EFFORT)
+maps_in = $(if $(QUICK),$(B)/charts,lab/charts/results)
+stability: stability_map
+	@mkdir -p $(SWEEP) $(maps_in)
+	@find $(SWEEP) -name '*.csv' ! -newer $(B)/stability_map -delete
+	@$(B)/stability_map $(SWEEP) --effort $(EFFORT)
+	@cp $(SWEEP)/stability_*.csv $(maps_in)
+	@$(draw) stability_limits --folder $(maps_in)
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
 # SCENES random scenes, the methods in turn; and 1,000 by --dt auto.

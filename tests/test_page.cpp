@@ -125,7 +125,7 @@ double beyond() {
   return most;
 }
 
-/** All that the page says of a run of @a scene, at its end or after 40 steps. */
+/** All that the page says of a run of @a scene of up to 40 steps. */
 std::string said_of(unsigned scene, const MethodEntry& method, double share) {
   page_load(scene, 5);
   for (const std::string& line : {"method " + std::string(method.info.name),

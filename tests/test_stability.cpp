@@ -3,8 +3,6 @@
 // sides, and the guard, which stops what diverges and lets pass what does not.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <complex>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -14,7 +12,6 @@
 
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/GraphArrays.hpp"
-#include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/RungeKutta.hpp"
 #include "lab/methods/Splitting.hpp"
@@ -340,82 +337,6 @@ TEST(DivergenceGuard, NamesTheFastestNodeAndItsLongestSpring) {
             "rest length of 2 m");
   g.clear();
   EXPECT_EQ(WorstPlace(g).text(), "no node is left");
-}
-
-// --------------------------------------------------------------
-// amplification()
-
-using Matrix = std::array<double, 4>;  // by rows, on (x, v/omega)
-
-Matrix product(const Matrix& a, const Matrix& b) {
-  return {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3],
-          a[2] * b[0] + a[3] * b[2], a[2] * b[1] + a[3] * b[3]};
-}
-double radius_of(const Matrix& m) {
-  return spectral_radius(m[0], m[1], m[2], m[3]);
-}
-
-/** The product of the stages of a splitting: A is x' = v, v' = -gamma v; B is a
- * kick of -omega^2 x. */
-template <typename Scheme>
-Matrix matrix_of(double y, double d) {
-  Matrix all = {1, 0, 0, 1};
-  bool kick = Scheme::kicks_first;
-  for (double part : Scheme::steps) {
-    const double way = d > 0 ? -std::expm1(-d * part) / d : part;
-    all = product(kick ? Matrix{1, 0, -part * y, 1}
-                       : Matrix{1, y * way, 0, std::exp(-d * part)},
-                  all);
-    kick = !kick;
-  }
-  return all;
-}
-
-/** The factor per step by which @a method amplifies the oscillator
- * x'' + gamma x' + omega^2 x = 0, by a formula: a check of amplification().
- * Runge-Kutta: the larger |R(z)| of the roots z of z^2 + d z + y^2 = 0, R the
- * Taylor polynomial of exp of the method's order. Others: the spectral radius
- * of the product of their stages.
- * @param y dt omega > 0   @param d dt gamma >= 0
- * Throws std::invalid_argument for methods without a formula here. */
-double amplification_by_theory(std::string_view method, double y, double d) {
-  if (method == "forward-euler" || method == "rk4") {
-    const std::complex<double> root =
-        std::sqrt(std::complex(d * d / 4 - y * y));
-    const int order = method == "rk4" ? 4 : 1;
-    auto R = [order](std::complex<double> z) {
-      std::complex<double> sum = 1;
-      for (int k = order; k > 0; --k) sum = 1.0 + z / double(k) * sum;
-      return std::abs(sum);
-    };
-    return std::max(R(-d / 2 + root), R(-d / 2 - root));
-  }
-  if (method == "symplectic-euler") return radius_of({1, y, -y, 1 - d - y * y});
-  if (method == "implicit-euler") {
-    const double q = 1 / (1 + d + y * y);
-    return radius_of({1 - q * y * y, q * y, -q * y, q});
-  }
-  if (method == "verlet") return radius_of(matrix_of<VerletScheme>(y, d));
-  if (method == "pefrl") return radius_of(matrix_of<PefrlScheme>(y, d));
-  if (method == "srkn11b") return radius_of(matrix_of<Srkn11bScheme>(y, d));
-  throw std::invalid_argument("no formula for " + std::string(method));
-}
-
-TEST(AmplificationByTheory, IsWhatAStepDoes) {
-  for (const char* name : {"forward-euler", "symplectic-euler", "verlet",
-                           "pefrl", "srkn11b", "rk4", "implicit-euler"}) {
-    auto method = find_method(name)->make();
-    for (double y : {0.1, 0.9, 1.6, 2.1, 3.1, 5.5})
-      for (double d : {0.0, 0.3, 1.1, 3.0}) {
-        const double theory = amplification_by_theory(name, y, d);
-        EXPECT_NEAR(amplification(*method, 0.01, 100 * y, 100 * d), theory,
-                    1e-9 * theory)
-            << name << " dt omega " << y << " dt gamma " << d;
-      }
-  }
-  ImplicitMidpoint midpoint;
-  for (double y : {0.1, 1.3, 3.5})
-    EXPECT_NEAR(amplification(midpoint, y / 7, 7), 1, 1e-9) << y;
 }
 
 }  // namespace

@@ -256,7 +256,7 @@ threads() {
     "${three[@]}" build/check/clang/test_flat_flow --gtest_filter='*Parts*'
 }
 programs() {
-  in_folder . cloth work_precision bench examples
+  in_folder . cloth work_precision stability_map bench examples
 }
 # Does advice still do what it did? How often it is right is in
 # lab/advice/README.md, from more scenes.
@@ -339,6 +339,10 @@ of_advice() { turn advice "$limit" advice; }
 of_clang() { turn clang "$long" clang read; }
 of_bare() { turn bare "$long" clang bare VIEWER=0 OPENMP=0; }
 of_threads() { turn threads "$long" threads; }
+of_figures() {
+  turn charts    "$limit" in_folder . -s charts QUICK=1
+  turn stability "$limit" in_folder . -s stability QUICK=1
+}
 # All that needs nothing of each other; the longest first.
 turns() {
   turn kit       "$long"  make --no-print-directory kit-check EVERY=64 \
@@ -348,8 +352,7 @@ turns() {
   in_turn of_clang of_bare of_threads
   turn python    "$limit" python_module
   turn pages     "$long"  env EVERY=2 FIRST=$((turn_of % 2)) tools/check_pages.sh
-  in_turn of_advice
-  turn charts    "$limit" in_folder . -s charts QUICK=1
+  in_turn of_advice of_figures
   turn arm       "$long"  arm
   turn laptops   "$long"  tools/check_laptops.sh
   turn try       "$limit" env EVERY=16 FIRST=$((turn_of % 16)) \

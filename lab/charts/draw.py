@@ -27,6 +27,7 @@ CHARTS: dict[str, tuple[str, str, Callable[..., None]]] = {
     "decision": ("charts", "work_precision.csv", decision.decision),
     "grid_refinement": ("charts", "grid_refinement.csv",
                         surveys.grid_refinement),
+    "stability_limits": ("charts", "stability_limits.csv", surveys.limits),
     "adviser": ("advice", "adviser.csv", surveys.adviser),
     "peers": ("bench", "peers.csv", peers.peers),
 }

@@ -1,13 +1,55 @@
-"""Charts of what was surveyed once: grids and steps refined, and how often
-advice is right."""
+"""Charts of what was surveyed once: the stability of stretched sheets, grids
+and steps refined, and how often advice is right."""
 from __future__ import annotations
 
+import math
 import pathlib
 
-from panels import GRAY, Axis, Curve, Panel, Picture
+from panels import GRAY, Axis, Curve, Panel, Picture, styles
 from results import Table
 
 BLUE, ORANGE, BLACK = "#0072B2", "#D55E00", "#000000"
+SAFE = {"plain": 0.0707, "diagonals": 0.0577}  # verlet's step sqrt(nodes) [s]
+
+
+def limits(csv: pathlib.Path, out: pathlib.Path) -> None:
+    """The largest stable step against the number of nodes: measured, predicted
+    and safe, a panel for a mesh."""
+    table, look = Table(csv), styles()
+    apart = max(abs(100 * (float(r["measured"]) / float(r["predicted"]) - 1))
+                for r in table.rows)
+    picture = Picture(
+        out, 800, 430, "Four times the nodes halve the stable step; prediction "
+        f"is right to {apart:.1f} %",
+        "A sheet stretched to 1.5 times its size, drag 1/s. Points: measured; "
+        "lines: predicted; dashed: safe, known before the run.",
+        table.footer())
+    for k, (mesh, safe) in enumerate(SAFE.items()):
+        panel = Panel(72 + 380 * k, 78, 400 + 380 * k, 350, Axis(15, 2e6),
+                      Axis(3e-5, 0.05),
+                      "plain mesh" if k == 0 else "with diagonals")
+        panel.curves = [Curve("safe", [(n, safe / math.sqrt(n))
+                                       for n in (15, 2e6)], GRAY, dash="--")]
+        for method, words in (("verlet", "verlet = symplectic-euler"),
+                              ("rk4", "rk4")):
+            rows = table.where(method=method, mesh=mesh)
+            nodes = [int(r["side"]) ** 2 for r in rows]
+            color = look[method][0]
+            panel.curves.append(Curve(
+                method, [(n, float(r["predicted"]))
+                         for n, r in zip(nodes, rows)], color, label=words))
+        panel.keep_free.append((panel.left, panel.bottom, panel.left + 300,
+                                panel.bottom + 26))
+        ax = picture.draw(panel, xlabel="nodes",
+                          ylabel="" if k else "largest stable step [s]")
+        for method in ("verlet", "rk4"):
+            rows = table.where(method=method, mesh=mesh)
+            ax.plot([int(r["side"]) ** 2 for r in rows],
+                    [float(r["measured"]) for r in rows], "o", ms=4,
+                    color=look[method][0])
+        picture.text(panel.left + 12, panel.bottom + 16,
+                     f"safe for verlet: {safe:.4f}/sqrt(nodes) s")
+    picture.finish()
 
 
 def grid_refinement(csv: pathlib.Path, out: pathlib.Path) -> None:

@@ -9,15 +9,16 @@
 
 namespace lab {
 
+namespace spectrum_detail {
+
 namespace {
 
-/** A spring for omega_safe(): its stiffness in the stiffest direction alone
- * [N/m], in a third of a Spring's memory. */
+/** A spring for omega_safe(): K alone, in a third of a Spring's memory. */
 struct ScalarSpring {
   unsigned i, j;
   double K;
   ScalarSpring(unsigned near, unsigned far, const Stiffness& B)
-      : i(near), j(far), K(std::max({0.0, B.along, B.across})) {}
+      : i(near), j(far), K(Spring{near, far, B}.K()) {}
 };
 
 template <typename S>
@@ -31,7 +32,13 @@ void find(const Cloth& g, const ForcePlan& force, std::vector<S>& springs) {
   ForcePlan(MassSpringForce()).add_stiffness(g, use);
 }
 
-/** m^(-1/2) [kg^(-1/2)] by node id; 0 for held nodes. */
+}  // namespace
+
+void find_springs(const Cloth& g, const ForcePlan& force,
+                  std::vector<Spring>& springs) {
+  find(g, force, springs);
+}
+
 void find_scales(const Cloth& g, const ConstraintPlan& constraint,
                  std::vector<double>& scale) {
   scale.assign(arrays(g).node_slots(), 0);
@@ -40,6 +47,8 @@ void find_scales(const Cloth& g, const ConstraintPlan& constraint,
     if (arrays(g).node_in_use(i)) scale[i] = 1 / std::sqrt(node[i].mass);
   constraint.each_held(g, [&](Node n) { scale[n.id()] = 0; });
 }
+
+namespace {
 
 /** The Lanczos method's estimate of the largest eigenvalue: value is a lower
  * bound of it, and some eigenvalue lies within error of value. */
@@ -104,8 +113,11 @@ Eigen::VectorXd random_start(const std::vector<double>& scale, unsigned dim) {
 
 }  // namespace
 
+}  // namespace spectrum_detail
+
 double omega_safe(const Cloth& g, const ForcePlan& force,
                   const ConstraintPlan& constraint) {
+  using namespace spectrum_detail;
   std::vector<ScalarSpring> springs;
   std::vector<double> scale;
   find(g, force, springs);
@@ -127,14 +139,15 @@ double omega_safe(const Cloth& g, const ForcePlan& force,
 
 double SharpOmega::operator()(const Cloth& g, const ForcePlan& force,
                               const ConstraintPlan& constraint, int products) {
-  find(g, force, springs_);
+  using namespace spectrum_detail;
+  find_springs(g, force, springs_);
   find_scales(g, constraint, scale_);
   auto multiply = [this](const Eigen::VectorXd& v, Eigen::VectorXd& w) {
     w.setZero();
     auto at = [&](unsigned i) {
       return scale_[i] * Point(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
     };
-    for (const Spring& s : springs_) {
+    for (const spectrum_detail::Spring& s : springs_) {
       const Point pull = s.B * (at(s.i) - at(s.j));
       for (unsigned k = 0; k < 3; ++k) {
         w[3 * s.i + k] += scale_[s.i] * pull[k];

@@ -7,12 +7,31 @@
  *
  * A force without SweptForce::add_stiffness() is taken to have the stiffness of
  * the cloth's edges. Without springs or free nodes, omega is 0. */
+#include <algorithm>
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
 #include "lab/fast/ForcePlan.hpp"
 
 namespace lab {
+
+namespace spectrum_detail {
+
+struct Spring {  // between the nodes of ids i and j
+  unsigned i, j;
+  Stiffness B;
+  /** The stiffness in the stiffest direction [N/m]. */
+  double K() const { return std::max({0.0, B.along, B.across}); }
+};
+
+void find_springs(const Cloth& g, const ForcePlan& force,
+                  std::vector<Spring>& springs);
+
+/** m^(-1/2) [kg^(-1/2)] by node id; 0 for held nodes. */
+void find_scales(const Cloth& g, const ConstraintPlan& constraint,
+                 std::vector<double>& scale);
+
+}  // namespace spectrum_detail
 
 /** The safe estimate: no frequency of the cloth exceeds it in any
  * configuration, even after nodes and edges are removed. It holds while masses
@@ -35,11 +54,7 @@ class SharpOmega {
                     const ConstraintPlan& constraint, int products = 15);
 
  private:
-  struct Spring {  // between the nodes of ids i and j
-    unsigned i, j;
-    Stiffness B;
-  };
-  std::vector<Spring> springs_;
+  std::vector<spectrum_detail::Spring> springs_;
   std::vector<double> scale_;
 };
 
