@@ -18,7 +18,7 @@ help-lab:
 	@echo 'make stability          the stability maps, on all cores; QUICK=1'
 	@echo 'make stability-soak     thousands of random scenes at the safe step'
 	@echo 'make crossings          drawn scenes against an independent oracle;'
-	@echo '                        N=600 SEED=7 PROMISE=healthy FIELD=wind'
+	@echo '                        N=600 SEED=7 PROMISE=healthy FIELD="drag dt=auto"'
 	@echo 'make orders             the order of every method, measured'
 	@echo 'make method-costs       what a step costs in steps of Verlet'
 	@echo 'make speed              what a step costs here: lab/bench/README.md'
@@ -39,7 +39,7 @@ draw = python3 lab/charts/draw.py
 # Scenes drawn from the table of fields keep what a run promises.
 crossings: $(B)/cloth
 	@/usr/bin/python3 tests/crossings/crossings.py $< $(N:%=--scenes %) $(SEED:%=--seed %) \
-	  $(PROMISE:%=--promise %) $(FIELD:%=--field %)
+	  $(PROMISE:%=--promise %) $(FIELD:%=--field %) $(LEAST:%=--least %)
 
 # How each source is compiled, for editors and clangd.
 compile_commands.json:

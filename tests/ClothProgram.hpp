@@ -93,16 +93,6 @@ class ClothProgram : public ::testing::Test {
     std::sort(names.begin(), names.end());
     return names;
   }
-  /** Start it, and kill it so many microseconds after @a ready holds; as
-   * interrupt(). */
-  Result kill_after(unsigned wait, const std::string& arguments,
-                    const std::function<bool()>& ready) {
-    CME212::Child child = start(arguments);
-    child.until(ready);
-    usleep(wait);
-    child.signal(SIGKILL);
-    return result_of(child.wait());
-  }
   /** The system's entry @a key of a process, such as "SigCgt:"; a blank if it
    * has ended. */
   static std::string state(const CME212::Child& process,

@@ -69,18 +69,6 @@ TEST_F(ClothProgram, KnowsTheStiffestStretchBeforeItStarts) {
   EXPECT_LT(last, limit("--method verlet --stiffness 10000"));
 }
 
-TEST_F(ClothProgram, CountsEnergyByTheForcesOfItsTime) {
-  const Result r = success(net +
-                           "--t-end 0.4 --method verlet --measure energy "
-                           "--at '0.2 gravity 0 0 5' --csv " +
-                           path("e.csv"));
-  const auto last = rows(dir / "e.csv").back();
-  EXPECT_GT(last[3], 0) << "below 0 it weighs upwards";
-  EXPECT_NEAR(last[12], 0, 1e-3) << "the balance";
-  EXPECT_NEAR(last[4], last[1] + last[2] + last[3], 1e-5);
-  EXPECT_TRUE(has(r.out, "energy: "));
-}
-
 TEST_F(ClothProgram, GoesOnAfterChangesToTheSameBits) {
   const std::string scene =
       net +

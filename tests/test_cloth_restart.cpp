@@ -1,19 +1,10 @@
-// Runs of ./cloth that are killed or interrupted, and go on from a checkpoint.
+// Runs of ./cloth that are interrupted, and go on from a checkpoint. Killed
+// ones: tests/crossings, promise restart.
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "lab/methods/Methods.hpp"
 #include "tests/ClothProgram.hpp"
 
-using namespace lab;
-
 namespace {
-
-// In memory: every checkpoint waits for its disk.
-const CME212::Environment folders("TMPDIR", fs::is_directory("/dev/shm")
-                                                ? "/dev/shm"
-                                                : std::getenv("TMPDIR"));
 
 /** The last lines but for how long it took. */
 std::string result(const std::string& out) {
@@ -23,56 +14,6 @@ std::string result(const std::string& out) {
   if (energy == std::string::npos) return out;
   return out.substr(out.rfind('\n', at) + 1, in - out.rfind('\n', at) - 1) +
          out.substr(energy);
-}
-
-const std::string scenes[] = {
-    "--sheet 'nodes 9 9 velocity 0 0 -2' --pin 'x 0' --tear 'at 0.5 0.5 -0.1 "
-    "radius 0.12' --tear-strain 0.15 --plane 'at 0 0 -0.2' --damping 0.02 ",
-    "--sheet 'nodes 8 8' --pin 'x 0' --pin 'x 1 velocity 0.2 0 1 until 0.05' "
-    "--sphere 'at 0.5 0.5 -0.15 radius 0.12 velocity 0 0 1 until 0.1' "
-    "--tear-strain 0.1 --self-collision 'thickness 0.03' "};
-
-// Every method on both scenes, killed at any moment, every second run twice: as
-// if nothing had been.
-TEST_F(ClothProgram, GoesOnToTheSameBitsWhereverItIsKilled) {
-  std::mt19937 random(std::random_device{}());
-  int killed = 0, went_on = 0;
-  const int runs = 2 * int(methods.size());
-  for (int k = 0; k < runs; ++k) {
-    const auto& m = *(methods.begin() + k % int(methods.size()));
-    const std::string run_of = scenes[k / int(methods.size()) % 2] +
-                               "--method " + std::string(m.info.name) +
-                               " --dt 0.003 --t-end 0.2 --headless ";
-    const Result whole = run(run_of + "--every 3 --csv " + path("a.csv") +
-                             " --out " + path("a.nodes"));
-    fs::remove(dir / "b.csv");
-    fs::remove(dir / "c");
-    const std::string part = " --checkpoint " + path("c") +
-                             " --every-seconds 0 --every 3 --csv " +
-                             path("b.csv") + " --out " + path("b.nodes");
-    for (int kills = k % 2; kills >= 0; --kills) {
-      const bool exists = fs::exists(dir / "c");
-      const unsigned wait = 1000 + random() % 40000;  // [us]
-      const Result r = kill_after(
-          wait, (exists ? "--headless --restart " + path("c") : run_of) + part,
-          [&] { return kills > 0 || fs::exists(dir / "c"); });
-      killed += r.status == 1000 + SIGKILL;
-    }
-    const bool exists = fs::exists(dir / "c");
-    went_on += exists;
-    const Result last =
-        run((exists ? "--headless --restart " + path("c") : run_of) + part);
-    EXPECT_EQ(last.status, whole.status) << m.info.name << last.err;
-    EXPECT_EQ(result(last.out), result(whole.out)) << m.info.name;
-    EXPECT_EQ(contents(dir / "b.nodes"), contents(dir / "a.nodes"))
-        << m.info.name;
-    EXPECT_EQ(contents(dir / "b.csv"), contents(dir / "a.csv")) << m.info.name;
-  }
-  EXPECT_EQ(went_on, runs);
-  RecordProperty("killed", killed);
-  RecordProperty("went_on", went_on);
-  std::printf("killed %d times in %d, %d went on from a checkpoint\n", killed,
-              runs + runs / 2, went_on);
 }
 
 TEST_F(ClothProgram, GoesOnAfterASignalWithTheRowsSoFar) {

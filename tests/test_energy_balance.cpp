@@ -43,23 +43,6 @@ double gain(const Scene& s) {
 
 // ----------------------------------------------------------------------- Work
 
-// The work of a pin that pulls is the energy of the cloth; what is missing goes
-// down with the square of the step. Of symplectic Euler, with the step.
-TEST(Work, OfAMovingPinIsTheEnergyOfTheCloth) {
-  for (auto [method, order] : {std::pair("verlet", 2), {"symplectic-euler", 1}})
-    for (double until : {0.1, 0.3}) {  // stops within the run, or does not
-      double error[2];
-      for (int k : {0, 1}) {
-        Scene s(pulled_sheet(8, method, 0.002 / (1 + k)));
-        ASSERT_TRUE(s.run_to(until));
-        EXPECT_GT(s.flow().work, 10);
-        error[k] = std::abs(gain(s)) / s.flow().work;
-        EXPECT_LT(error[k], 0.02) << method;
-      }
-      EXPECT_LT(error[1], 0.7 * error[0]) << method;
-    }
-}
-
 // Nodes inside an obstacle at t = 0 are moved out: that is its work, the same
 // for every step, and no divergence.
 TEST(Work, OfAnObstacleOnNodesThatStartInIt) {
@@ -91,36 +74,6 @@ TEST(Work, OfTheWind) {
     EXPECT_NEAR(s.energy().total(), 0.5 * normSq(v), 0.03);
     EXPECT_NEAR(s.flow().drag, -s.energy().total(), 0.005);
   }
-}
-
-// A cloth at rest has no energy but what the wind gives it: that is available
-// to the guard.
-TEST(Work, OfTheWindIsAvailable) {
-  for (const char* method : {"verlet", "rk4", "implicit-euler"}) {
-    Model m = sheet(3, method, 0.001);
-    m.gravity = 0;
-    m.pins = {pin_at_x(0)};
-    m.damping = 0.05;
-    m.wind = Wind{Point(0, 0, 5)};
-    Scene s(m);
-    EXPECT_TRUE(s.run_to(1, [] {})) << method << text_of(s.failure());
-    EXPECT_GT(s.energy().internal(), 0.1);
-  }
-}
-
-// A pin that turns does work; the cloth has it, to the order of the method.
-TEST(Work, OfAPinThatTurns) {
-  double error[2];
-  for (int k : {0, 1}) {
-    Model m = sheet(6, "verlet", 0.002 / (1 + k));
-    m.pins = {pin_at_x(0, {{}, 0.3, Point(0, 5, 0), Point(0.1, 0, 0)})};
-    Scene s(m);
-    ASSERT_TRUE(s.run_to(0.2));
-    EXPECT_GT(s.flow().work, 0.03);
-    error[k] = std::abs(gain(s)) / s.flow().work;
-  }
-  EXPECT_LT(error[0], 0.02);
-  EXPECT_LT(error[1], 0.5 * error[0]);
 }
 
 // It hits all nodes at once, and they stay on it: 1 kg gets a speed of V, and

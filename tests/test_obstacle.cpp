@@ -326,20 +326,6 @@ TEST_P(Sliding, ANodeOnARisingBallRisesWithItAndStopsWithoutIt) {
   EXPECT_NEAR(n.position().z, 0.7, 1e-12);
 }
 
-// Friction keeps a node on a ball that moves aside; without it, it stays back.
-TEST_P(Sliding, ARoughBallTakesANodeAlong) {
-  for (double friction : {0.0, 1.0}) {
-    g.clear();
-    Node n = g.add_node(Point(0, 0, 0.5));
-    run(0.001, 0.2, GravityForce(),
-        BallConstraint({Point(), 0.5}, {Point(0.1, 0, 0)}, friction));
-    if (friction > 0)
-      EXPECT_NEAR(n.position().x, 0.02, 0.002);
-    else
-      EXPECT_LT(n.position().x, 0);
-  }
-}
-
 // A cloth falls on a ball and a wall; and the same in a train.
 TEST(Obstacles, AreTheSameForAllWhoMoveAlike) {
   const Point speed(3, -2, 1);

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 """Draw scenes from the table of fields and hold each promise of a run against
 an independent oracle; a scene that breaks one is made as small as it can be.
-  crossings.py CLOTH [--scenes N] [--seed S] [--promise P] [--field F]
-Status 1: a promise is broken that found.toml does not list as known."""
+  crossings.py CLOTH [--scenes N] [--seed S] [--promise P] [--field F]...
+  [--least N]
+Status 1: a promise is broken that found.toml does not list as known, or a pair
+of fields was drawn fewer than --least times."""
 import argparse
 import collections
 import pathlib
@@ -91,11 +93,16 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=60)
     parser.add_argument("--seed", type=int, default=time.time_ns() % 10**8)
     parser.add_argument("--promise", choices=PROMISES)
-    parser.add_argument("--field", choices=scenes.FIELDS)
+    parser.add_argument("--field", action="append", default=[],
+                        help="that acts: F, F=WORD or F=twice")
+    parser.add_argument("--least", type=int, default=0, help="print how often "
+                        "each pair of fields was drawn; 1 if fewer times")
     a = parser.parse_args()
     if missing := set(scenes.table_of_fields()) ^ set(scenes.FIELDS):
         sys.exit(f"{HERE}/scenes.py:1: no way to draw, or no field: {missing}")
-    with tempfile.TemporaryDirectory() as folder:
+    memory = pathlib.Path("/dev/shm")  # a checkpoint waits for its disk
+    with tempfile.TemporaryDirectory(
+            dir=memory if memory.is_dir() else None) as folder:
         sys.exit(hold(a, pathlib.Path(folder)))
 
 
@@ -117,7 +124,9 @@ def hold(a: argparse.Namespace, folder: pathlib.Path) -> bool:
             numbers = kinds.setdefault((promise, wrong[0], why), [])
             numbers.append(title)
             if not why and len(numbers) <= 3:
-                show(title, promise, *shrink(case, promise, wrong))
+                show(title, promise, *(
+                    (case, wrong) if wrong[0] == "too long" else
+                    shrink(case, promise, wrong)))
         return wrong
 
     for number, row in enumerate(rows, 1):
@@ -138,12 +147,14 @@ def hold(a: argparse.Namespace, folder: pathlib.Path) -> bool:
     print(f"seed {a.seed}: {a.scenes} scenes")
     for text, n in count.most_common():
         print(f"{n} {text}")
-    print("pairs drawn least:", *(
-        f"{a} x {b} {n}" for (a, b), n in pairs.most_common()[-5:]))
+    text, few = scenes.table(pairs, a.least)
+    if a.least:
+        print(text + f"\npairs drawn fewer than {a.least} times: " +
+              (", ".join(few) or "none"))
     for (promise, kind, why), titles in sorted(kinds.items()):
         print(f"{promise}, {kind}: {len(titles)} scenes, first {titles[0]}" +
               f" (known: {why})" * bool(why))
-    return any(not why for _, _, why in kinds)
+    return bool(few) or any(not why for _, _, why in kinds)
 
 
 if __name__ == "__main__":

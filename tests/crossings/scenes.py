@@ -19,9 +19,13 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 METHODS = re.findall(r'\.name = "(.+)"', "".join(
     path.read_text() for path in sorted((ROOT / "lab/methods").glob("*.hpp"))))
 MESHES = {"sheet", "net", "nodes"}
+# Of each of these sets of fields at most one acts.
+RIVALS = [MESHES, {"stiffness", "modulus"}, {"damping", "drag"},
+          {"tolerance", "method"}, {"tolerance", "dt"},
+          {"from-rest", "self-collision"}]
 # The powers of length and time in what is drawn; the unit of mass is kept.
 UNITS = {word: powers for powers, words in {
-    (1, 0): "at u v from to radius x y z about tolerance points",
+    (1, 0): "at u v from to radius x y z about tolerance points thickness",
     (1, -1): "velocity velocities", (0, -1): "turn damping",
     (0, 1): "until t-end dt", (1, -2): "gravity", (-2, 0): "density",
     (0, -2): "sides diagonals bend stiffness modulus", (-2, -1): "drag",
@@ -174,11 +178,18 @@ class Draw:
 
     def tolerance(self) -> float | None:
         """It chooses method and step."""
-        if self.chance(.85):
+        if self.chance(.75):
             return None
-        for field in ("dt", "method", "at"):
+        for field in ("dt", "method"):
             self.s.pop(field, None)
         return self.number(1e-6, 1e-3)
+
+    def thickness(self) -> Scene:
+        """Less or more than the nodes are apart, up to a refusal."""
+        apart = min(float(norm(a - b))
+                    for a, b in combinations(Net(self.s).x, 2))
+        return {"thickness": self.number(.2 * apart, 1.2 * apart)} | self.some(
+            .5, friction=self.number(.05, 1))
 
     def gravity(self) -> Any:  # a number acts down, whatever its sign
         if self.chance(.3):
@@ -223,16 +234,15 @@ FIELDS: dict[str, Any] = {
     "drag": (1e-3, 3), "region": lambda d: d.several(d.region),
     "wind": lambda d: {"velocity": d.vector(5)},
     "gravity": Draw.gravity,
-    "pin": lambda d: d.several(d.pin), "method": lambda d: d.one_of(
+    "pin": lambda d: d.several(d.pin),
+    "from-rest": lambda d: Net(d.s).held() != [] or None,
+    "method": lambda d: d.one_of(
         METHODS + ["verlet"] * 5 + ["symplectic-euler"] * 3),
     "t-end": Draw.t_end, "at": Draw.at,
     "plane": lambda d: d.several(d.plane),
     "sphere": lambda d: d.several(lambda: d.ball() | d.motion()),
     "tear": lambda d: [d.ball()], "tear-strain": (.02, 1),
-    # The order in which its pairs are pushed decides where they end, so
-    # that there is no truth to compare with.
-    "self-collision": lambda d: None,
-    "from-rest": lambda d: None,  # the oracle has no equilibrium
+    "self-collision": Draw.thickness,
     "dt": lambda d: d.one_of(  # in place of the step that is set
         [None] * 7 + ["auto", "auto", "auto:sharp"]),
     "measure": Draw.measure, "tolerance": Draw.tolerance,
@@ -240,27 +250,55 @@ FIELDS: dict[str, Any] = {
 
 
 def draw(rng: np.random.Generator, pairs: collections.Counter,
-         must: str | None = None) -> Scene:
+         asked: Iterable[str] = ()) -> Scene:
     """A scene; of some sets of fields the one whose pairs were drawn least.
-    pairs: how often each was drawn; counts on. must: a field that acts."""
+    pairs: how often each was drawn; counts on. asked: what has() is true of."""
+    must = {a.partition("=")[0] for a in asked}
+
     def fields() -> set[str]:
-        mesh = must if must in MESHES else str(rng.choice(
-            ["sheet", "net", "nodes"], p=(.5, .25, .25)))
+        mesh = str(rng.choice([*MESHES & must] or ["sheet", "sheet", "net",
+                                                   "nodes"]))
         on = {f for f in FIELDS if rng.random() < .5} - MESHES
         if rng.random() < .5:
             on -= set(CONTACT)
-        on |= {mesh, must or mesh, "t-end", "measure", "method", "dt"}
-        for two in (["stiffness", "modulus"], ["damping", "drag"]):
-            if on.issuperset(two):
-                on.remove(str(rng.choice([f for f in two if f != must])))
+        on |= {mesh, *must, "t-end", "measure", "method", "dt"}
+        for two in RIVALS[1:3] + RIVALS[-1:]:
+            if on >= two:
+                on.remove(str(rng.choice(sorted(two - must))))
         if "wind" in on and not on & {"damping", "drag"}:
             on.add(str(rng.choice(["damping", "drag"])))
         return on if names_parts(on) else on | {"pin"}
-    best = min((fields() for _ in range(6)), key=lambda on: np.mean(
-        [pairs[two] for two in combinations(sorted(on), 2)]))
-    s = Draw(rng, best).s
+    s: Scene = {}
+    while not s or not all(has(s, a) for a in asked):
+        s = Draw(rng, min((fields() for _ in range(6)), key=lambda on: np.mean(
+            [pairs[two] for two in combinations(sorted(on), 2)]))).s
     pairs.update(combinations(sorted(s), 2))
     return s
+
+
+def table(pairs: collections.Counter, least: int) -> tuple[str, list[str]]:
+    """How often each pair was drawn; and those drawn fewer times than least."""
+    names, text, few = [f for f in FIELDS if f != "tets"], "", list[str]()
+    for k, f in enumerate(names):
+        text += f"{f:15}"
+        for g in names[:k]:
+            n = pairs[min(f, g), max(f, g)]
+            text += f"{n:5}"
+            if n < least and not any({f, g} <= rivals for rivals in RIVALS):
+                few.append(f"{f} x {g} {n}")
+        text += "\n"
+    return text + " " * 15 + "".join(f" {f[:4]:4}" for f in names), few
+
+
+def has(s: Scene, asked: str) -> bool:
+    """Whether s has the field; or FIELD=WORD, with this word; or FIELD=twice,
+    a part twice or a node in two pins."""
+    field, _, word = asked.partition("=")
+    if word != "twice" or field not in s:
+        return field in s and word in str(s[field])
+    all_ = [str(p) for p in s[field]] if field != "pin" else [
+        str(k) for nodes, _ in Net(s).pins for k in nodes]
+    return len(set(all_)) < len(all_)
 
 
 def names_parts(s: Iterable[str]) -> bool:
@@ -282,6 +320,9 @@ def options(s: Scene, folder: pathlib.Path) -> list[str]:
     """The options of ./cloth; writes the files of meshes into the folder."""
     all_: list[str] = []
     for field, value in s.items():
+        if value is True:
+            all_.append("--" + field)
+            continue
         if field in ("net", "nodes"):
             for option, text in mesh_files(field, value):
                 (folder / ("a." + option)).write_text(text)
