@@ -57,7 +57,7 @@ try:
 # ---- Charts: lab/charts/README.md
 
 charts: work_precision
-	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
+	@MEASURED="$(measured_on)" BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and
@@ -96,7 +96,7 @@ adviser-suite: $(B)/cloth
 native = -march=native -Wno-maybe-uninitialized
 speed:
 	@$(sub) bench B=$(B)/native CXXFLAGS='$(native) $(CXXFLAGS)'
-	@lab/bench/speed.sh $(B)/native/bench
+	@MEASURED="$(measured_on)" lab/bench/speed.sh $(B)/native/bench
 
 # Written whole: a run that fails leaves the results alone.
 # A tree that differs from its last commit is measured "after" that.
