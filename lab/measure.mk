@@ -77,7 +77,7 @@ try:
 # ---- Charts: lab/charts/README.md
 
 charts: work_precision
-	@BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
+	@MEASURED="$(measured_on)" BUILD='$(B)' QUICK='$(QUICK)' SCENE='$(SCENE)' METHODS='$(METHODS)' \
 	  lab/charts/make.sh
 
 # Cells of an earlier program are measured anew.
@@ -127,7 +127,7 @@ adviser-suite: $(B)/cloth
 native = -march=native -Wno-maybe-uninitialized
 speed:
 	@$(sub) bench B=$(B)/native CXXFLAGS='$(native) $(CXXFLAGS)'
-	@lab/bench/speed.sh $(B)/native/bench
+	@MEASURED="$(measured_on)" lab/bench/speed.sh $(B)/native/bench
 
 # Written whole: a run that fails leaves the results alone.
 # A tree that differs from its last commit is measured "after" that.

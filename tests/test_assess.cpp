@@ -7,6 +7,7 @@
 #include "lab/advice/Advise.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/SceneFile.hpp"
+#include "lab/scenes/StoredScenes.hpp"
 #include "lab/scenes/Words.hpp"
 #include "lab/stepping/Trial.hpp"
 #include "tests/ReadParts.hpp"

@@ -191,10 +191,7 @@ TEST_F(WorkPrecision, WritesATableThatIsWholeAndTrue) {
                         csv()),
             0)
       << err();
-  std::string text = contents(csv());
-  for (const char* line : {"# machine: ", "# compiler: ", "# commit: ",
-                           "# reference chain: exact, srkn11b "})
-    EXPECT_TRUE(has(text, line)) << line;
+  EXPECT_TRUE(has(contents(csv()), "# reference chain: exact, srkn11b "));
   std::set<std::string> seen;
   for (Row& row : rows()) {
     const bool ok = row["status"] == "ok";

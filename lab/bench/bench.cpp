@@ -13,12 +13,10 @@
 #include <cstdlib>
 #include <functional>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "lab/bench/Cloths.hpp"
-#include "lab/charts/Report.hpp"
 #include "lab/fast/FlatFlow.hpp"
 #include "lab/fast/Lanes.hpp"
 #include "lab/fast/Sweep.hpp"
@@ -169,17 +167,6 @@ std::vector<Figure> figures() {
          return staging(n, {.t = 0, .kick = 0, .keep = true});
        }});
 
-  // The other parts of a step.
-  add({"part: drift", "step: SymplecticEuler",
-       [](unsigned n) { return staging(n, {.t = 0, .drift = dt}); }, false});
-  add({"part: read and write", "step: SymplecticEuler",  // once a batch
-       [](unsigned n) -> Make {
-         return [flat = std::make_shared<FlatCloth>(), none = Drag(),
-                 &g = cloth(n, Kind::grid)] {
-           flat->take(g, 1, none), flat->write(g);
-         };
-       },
-       false});
   // The check of a scene after every 32nd step.
   add({"part: guard", "step: Verlet",
        [](unsigned n) -> Make {
@@ -263,10 +250,6 @@ void add_triad(const char* name, std::size_t bytes, int threads) {
 int main(int argc, char** argv) {
   lanes::cpu = lanes::fastest_cpu();
   benchmark::Initialize(&argc, argv);
-  std::ostringstream head;
-  report::write_head(head, "bench");
-  benchmark::AddCustomContext("about", head.str());
-  benchmark::AddCustomContext("machine", report::machine());
   benchmark::AddCustomContext("kernels", lanes::name_of(lanes::cpu));
   add_triad("in the cache", 1 << 19, 1);
   add_triad("in memory", std::size_t(192) << 20, 1);

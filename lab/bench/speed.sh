@@ -22,7 +22,7 @@ lab/bench/table.py "${1:-build/native/bench}" --json "$folder/bench.json" |
 # A commit that was measured before gets its lines anew.
 history=$folder/history.csv
 [ -e "$history" ] || echo 'date,commit,nodes,step,ratio' >"$history"
-commit=$(sed -n 's/.*# commit: \([^;]*\);.*/\1/p' "$folder/bench.json")
+commit=${MEASURED:-unknown} commit=${commit##*commit }
 sed -i "/^[^,]*,$commit,/d" "$history"
 sed -n 's/.*"group": "\(10*\) nodes[^"]*", "name": "step: \(SymplecticEuler\|SymplecticEuler, mixed\|Verlet\)",.*"ratio": \([0-9.e-]*\).*/\1,\2,\3/p' \
   "$folder/bench.json" | sed 's/, mixed/ mixed/' | while read -r row; do

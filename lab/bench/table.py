@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import pathlib
 import statistics
 import subprocess
@@ -16,6 +17,7 @@ import tempfile
 from typing import Any
 
 TRIADS = "triad, three arrays of doubles"
+MEASURED = os.environ.get("MEASURED", "")  # machine, compiler and commit
 
 
 def measured(program: str, *options: str) -> tuple[Any, Any]:
@@ -62,7 +64,7 @@ def print_table(context: dict[str, str], found: dict[Any, Any]) -> None:
         triad = found.get((TRIADS, name))
         return 24e-9 * triad["items"] / triad["median_s"] if triad else 0
 
-    print(f"{context['machine']}; kernels {context['kernels']}; triad in "
+    print(f"{MEASURED}; kernels {context['kernels']}; triad in "
           f"memory {bandwidth('in memory'):.1f} GB/s, by all threads "
           f"{bandwidth('in memory, all threads'):.1f} GB/s")
     last = None
@@ -81,16 +83,14 @@ def print_table(context: dict[str, str], found: dict[Any, Any]) -> None:
         print(line)
 
 
-def write_json(context: dict[str, str], found: dict[Any, Any],
-               path: pathlib.Path) -> None:
-    about = ";".join(context["about"].replace(";", ",").splitlines()) + ";"
+def write_json(found: dict[Any, Any], path: pathlib.Path) -> None:
     lines = []
     for f in found.values():
         row = {k: v for k, v in f.items() if k != "bytes" and v != ""}
         if "ratio" not in row:
             row.pop("beside", None)
         lines.append(json.dumps(row))
-    path.write_text(f'{{"about": {json.dumps(about)},\n "figures": [\n  ' +
+    path.write_text(f'{{"about": {json.dumps(MEASURED)},\n "figures": [\n  ' +
                     ",\n  ".join(lines) + "\n ]}\n")
 
 
@@ -112,7 +112,7 @@ def main() -> None:
     found = figures(runs)
     print_table(context, found)
     if asked.json:
-        write_json(context, found, asked.json)
+        write_json(found, asked.json)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measure and draw the charts: make charts. All of them go to results/; a quick
 # run, or one of some scenes or methods only, to build/charts. BUILD: where the
-# programs are.
+# programs are; MEASURED: machine, compiler and commit.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -16,12 +16,12 @@ mkdir -p "$to"
 
 draw() { python3 lab/charts/draw.py "$@" --folder "$to"; }
 
-csv=$to/work_precision.csv
-"$build/work_precision" ${options[@]+"${options[@]}"} --out "$csv" \
-  ${SCENE:+--scenes "$SCENE"}
+measure() {  # NAME OPTION...
+  "$build/work_precision" ${options[@]+"${options[@]}"} "${@:2}" --out "$to/$1.csv"
+  sed -i "1i # ${MEASURED:-}" "$to/$1.csv"
+}
+measure work_precision ${SCENE:+--scenes "$SCENE"}
 draw work_precision decision
-[ -z "$SCENE" ] || exit 0
-[ -z "$METHODS" ] || exit 0
-"$build/work_precision" ${options[@]+"${options[@]}"} --grid-refinement \
-  --out "$to/grid_refinement.csv"
+[ -z "$SCENE$METHODS" ] || exit 0
+measure grid_refinement --grid-refinement
 draw grid_refinement

@@ -6,15 +6,15 @@
  *   build/work_precision --quick --scenes grid0,chain --methods verlet,pefrl
  *   build/work_precision --grid-refinement
  *
- * The columns: lab/charts/README.md. Exit status: 0 done; 2 an option or an
- * input that can't be used, or an output that can't be written. */
+ * The columns: lab/charts/README.md; make.sh adds machine and commit. Exit
+ * status: 0 done; 2 an option or an input that can't be used, or an output that
+ * can't be written. */
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +24,6 @@
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
 #include "lab/charts/Problem.hpp"
-#include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Splitting.hpp"
@@ -34,10 +33,21 @@
 
 using namespace lab;
 
-using report::cell;
-using report::write_head;
-
 namespace {
+
+/** @a a as a cell of the table, six digits; empty if it is not finite. */
+std::string cell(double a) {
+  if (!std::isfinite(a)) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", a);
+  return text;
+}
+/** @a text as a cell, without commas, quotes and ends of lines. */
+std::string cell(std::string text) {
+  for (char& c : text)
+    if (c == ',' || c == '"' || c == '\n') c = ';';
+  return text;
+}
 
 struct Options {
   std::vector<std::string> scenes, methods;
@@ -153,7 +163,7 @@ void write_case(std::ostream& out, const Problem& p, const Reference& r,
 void work_precision(const std::vector<Problem>& problems,
                     const std::vector<const MethodEntry*>& chosen,
                     const Options& o, std::ostream& out, Progress& progress) {
-  write_head(out, "work and precision; columns: lab/charts/README.md");
+  out << "# work and precision; columns: lab/charts/README.md\n";
   for (const Problem& p : problems)
     out << "# scene " << p.name << ": " << p.about
         << "; error: " << name_of(p.norm) << '\n';
@@ -211,8 +221,8 @@ void grid_refinement(const Options& o, std::ostream& out, Progress& progress) {
   auto steps_of = [](unsigned side) {  // the stable step: 0.0577 s/side
     return static_cast<long long>(std::ceil(0.25 * side / 0.0577));
   };
-  write_head(out, "refining the grid, the step, or both; Verlet");
-  out << "# scene: the assignment's cloth with drag, by verlet; height of the "
+  out << "# refining the grid, the step, or both; Verlet\n"
+         "# scene: the assignment's cloth with drag, by verlet; height of the "
          "center of mass at "
          "0.25 s\n# reference: "
       << finest << " nodes a side, 1/4 of the stable step\n"
