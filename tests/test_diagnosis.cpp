@@ -311,7 +311,7 @@ TEST(Diagnosis, NamesNoCureWhoseTrialWasStopped) {
   const Diagnosis d = diagnose(within_the_limit(), [&](const Cure&) {
     return Attempt{++trials > 1, 1.5};  // s, of 2
   });
-  EXPECT_EQ(trials, 10);
+  EXPECT_LE(trials, 10);
   EXPECT_FALSE(d.cure);
   EXPECT_TRUE(begins(d.remedy_text(),
                      "no remedy was found: trials of --dt 0.0035 failed, too; "
