@@ -13,6 +13,7 @@ starter of the level open leaves out. It has what stands between the lines
 <!-- open and --> in its place.
 """
 import html
+import pathlib
 import re
 import sys
 import textwrap
@@ -142,9 +143,23 @@ def check(course: tasks.Course) -> list[str]:
     return wrong
 
 
+def programs(page: pathlib.Path) -> list[str]:
+    """The C++ of a page, without the words of its comments."""
+    return [re.sub(r"\s*//.*", "", code) for code in re.findall(
+        r"^```cpp\n(.*?)^```", page.read_text("utf-8"), re.M | re.S)]
+
+
+def strays(folder: pathlib.Path = COURSE / "words") -> Iterator[str]:
+    """Pages in other languages whose programs are not those of the original."""
+    for page in sorted(folder.glob("*/*.md")):
+        if programs(page) != programs(COURSE / page.name):
+            yield (f"course/words/{page.relative_to(folder)}:1: its programs "
+                   f"are not those of course/{page.name}")
+
+
 def main() -> int:
     try:
-        wrong = check(tasks.load())
+        wrong = [*check(tasks.load()), *strays()]
     except tasks.TasksError as error:
         sys.exit(str(error))
     for fault in wrong:
