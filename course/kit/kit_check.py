@@ -3,8 +3,8 @@
 The solution gets all points; the starter none of those that its stubs hold
 back; each region stubbed alone turns red a test of its own section and none of
 an earlier one; each mistake of course/wrong (mistakes.py) loses what it says
-and nothing else; what pages and contracts promise is broken by one of them
-(promises.py); right submissions to older starters keep their points (years.py).
+and nothing else; right submissions to older starters keep their points
+(years.py).
 `make mistakes` (the word mistakes) writes course/wrong/answers.json instead:
 what each of them answers (recognize.py). ONLY takes the cases whose names hold WORD; EVERY takes one in
 N of the regions and mistakes, beginning with number FIRST, by default 0: all
@@ -28,7 +28,6 @@ import judge
 import markers
 import mistakes
 import once
-import promises
 import recognize
 import report
 import submission
@@ -279,8 +278,6 @@ def programs(check: Check) -> None:
 def main() -> bool:
     only = os.environ.get("ONLY", "")
     try:
-        if faults := promises.faults():
-            raise mistakes.MistakeError("\n".join(faults))
         check = Check(Cases())
         if sys.argv[1:] == ["mistakes"]:
             keep_answers(check)
