@@ -1,5 +1,5 @@
 /** @file test_course_interface.cpp
- * What a Graph can't keep is refused in the course's words. */
+ * Values that a Graph can't keep are refused in the course's words. */
 #include <gtest/gtest.h>
 
 #include <fstream>

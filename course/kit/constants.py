@@ -150,7 +150,8 @@ data/scenes/constraints.toml data/scenes/tear.toml
   at {x} {y} {z} radius {radius}"
   from 0 -0.4 {floor} to
 """
-MEASURED = """Not computed: the corners and the drag 1/N, which are none of [numbers], as
+MEASURED = """\
+Not computed: the corners and the drag 1/N, which are none of [numbers], as
 tests of 7.2 have nets for them (git grep '1, 0, 0'); and what was measured, for
 which look at: make kit-check course-pictures, energies and times below "What
 you see" and "Usual mistakes" of course/3.2.md to 6.2.md, course/teaching.md"""
@@ -186,7 +187,8 @@ def values(text: str) -> dict[str, str]:
         line = 1 + text.partition("[numbers]")[0].count("\n")
         raise tasks.TasksError([
             f"{tasks.FILE}:{line}: [numbers] has gravity, K and radius > 0, "
-            "K < 4e6, floor < 0, center with three numbers, no others"]) from None
+            "K < 4e6, floor < 0, center with three numbers, no "
+            "others"]) from None
     return {name: f"{a:.12g}" for name, a in {
         "gravity": g, "K": k, "floor": z, "radius": r, "depth": -z, "x": x,
         "y": y, "z": c}.items()} | {name: f"{round(a, 4):g}" for name, a in {

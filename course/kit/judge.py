@@ -23,6 +23,7 @@ import tempfile
 import threading
 from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import diagnosis
 import markers
@@ -158,37 +159,14 @@ def solution() -> dict[str, bytes]:
             for name, text in markers.read_sources().items()}
 
 
-class Memory:
-    """Results of tests of other submissions that read the same files: to
-    grade many that differ little. Given to Judge, it saves most of the work."""
-
-    def __init__(self):
-        self.kept: dict[tuple[units.Way, tuple[str, ...]], list[
-            tuple[set[str], dict[str, bytes], Results]]] = {}
-
-    def recall(self, way: units.Way, tests: tuple[str, ...],
-               files: dict[str, bytes]) -> Results | None:
-        for there, read, results in self.kept.get((way, tests), []):
-            if there == files.keys() and all(
-                    files[name] == text for name, text in read.items()):
-                return dict(results)
-        return None
-
-    def keep(self, way: units.Way, tests: tuple[str, ...],
-             files: dict[str, bytes], included: set[str],
-             results: Results) -> None:
-        self.kept.setdefault((way, tests), []).append(
-            (set(files), {name: files[name] for name in included}, results))
-
-
 class Judge:
     """Grades one submission in a folder of its own."""
 
     def __init__(self, kit: once.Kit, folder: pathlib.Path,
                  files: dict[str, bytes], jobs: int,
-                 memory: Memory | None = None,
+                 memory: Any = None,
                  year: years.Year | None = None):
-        self.kit, self.memory = kit, memory
+        self.kit, self.memory = kit, memory     # kit_check.Memory
         self.jobs = threading.Semaphore(jobs)
         self.folder, self.files = folder, files
         self.seconds = 0.0      # of processor time so far
@@ -466,9 +444,8 @@ class Judge:
             mark = recognize.mark((result.name, result.did, result.expected,
                                    result.got), usual)
             if recognize.tells(mark, right):
-                result.mark = mark
-                result.recognized = recognize.recognized(test, mark, usual,
-                                                         right)
+                result.mark, result.recognized = mark, recognize.recognized(
+                    test, mark, usual, right)
 
 
 def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
@@ -499,7 +476,8 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
     files = solution()
     kit.answers = None
     folder = kit.locked_part("solution", [
-        *once.KIT.glob("*.*"), recognize.FILE, *once.TESTS.glob("*.*"), *units.ASKED.glob("*"),
+        *once.KIT.glob("*.*"), recognize.FILE, *once.TESTS.glob("*.*"),
+        *units.ASKED.glob("*"),
         *map(markers.path_of, markers.SOURCES),
         *(once.ROOT / "CME212").rglob("*.hpp")], make,
         (sorted(tests.items()),))
@@ -510,7 +488,7 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
 
 
 def judge(kit: once.Kit, files: dict[str, bytes], tests: dict[str, str],
-          jobs: int, memory: Memory | None = None,
+          jobs: int, memory: Any = None,
           year: years.Year | None = None) -> Results:
     """{test: Result} of a submission and {test: what it needs}; `year` is that
     of an older starter."""

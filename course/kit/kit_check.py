@@ -4,11 +4,10 @@ The solution gets all points; the starter none of those that its stubs hold
 back; each region stubbed alone turns red a test of its own section and none of
 an earlier one; each mistake of course/wrong (mistakes.py) loses what it says
 and nothing else; right submissions to older starters keep their points
-(years.py).
-`make mistakes` (the word mistakes) writes course/wrong/answers.json instead:
-what each of them answers (recognize.py). ONLY takes the cases whose names hold WORD; EVERY takes one in
+(years.py). ONLY takes the cases whose names hold WORD; EVERY takes one in
 N of the regions and mistakes, beginning with number FIRST, by default 0: all
-FIRST < N together take each of them once.
+FIRST < N together take each of them once. With the word `mistakes` it writes
+course/wrong/answers.json instead: what each of them answers (recognize.py).
 """
 
 import concurrent.futures
@@ -32,6 +31,7 @@ import recognize
 import report
 import submission
 import tasks
+import units
 import years
 
 BASES = ("solution", "simple", "forms")     # submissions that are right
@@ -149,6 +149,29 @@ class Cases:
         return faults
 
 
+class Memory:
+    """judge.Results of tests of other submissions that read the same files: to
+    grade many that differ little. Given to Judge, it saves most of the work."""
+
+    def __init__(self):
+        self.kept: dict[tuple[units.Way, tuple[str, ...]], list[
+            tuple[set[str], dict[str, bytes], judge.Results]]] = {}
+
+    def recall(self, way: units.Way, tests: tuple[str, ...],
+               files: dict[str, bytes]) -> judge.Results | None:
+        for there, read, results in self.kept.get((way, tests), []):
+            if there == files.keys() and all(
+                    files[name] == text for name, text in read.items()):
+                return dict(results)
+        return None
+
+    def keep(self, way: units.Way, tests: tuple[str, ...],
+             files: dict[str, bytes], included: set[str],
+             results: judge.Results) -> None:
+        self.kept.setdefault((way, tests), []).append(
+            (set(files), {name: files[name] for name in included}, results))
+
+
 class Check:
     """Grades the cases, two at a time, and counts."""
 
@@ -157,7 +180,7 @@ class Check:
         self.kit = once.Kit()
         self.tests = grade.tests_of(cases.course)
         judge.prepare(self.kit, self.tests, 2)
-        self.memory = judge.Memory()
+        self.memory = Memory()
         self.passed = self.failed = 0
 
     def judge(self, case: Case, tests: dict[str, str]) -> judge.Results:

@@ -1,4 +1,4 @@
-"""Name the mistake behind a test that failed, by what it answered:  make mistakes
+"""Name the mistake behind a test that failed, by its answers:  make mistakes
 
 A test goes on after a check that failed, so a submission answers the same
 questions whatever is wrong (runner.cpp). course/wrong/answers.json holds what

@@ -206,15 +206,6 @@ class Runner(Programs):
         self.assertRegex(done.stdout, r"remove_node\(iterator\): FAILED  0/3"
                          r"(\n  .*)*\n  It crashed at Graph\.hpp:\d+; ")
 
-    def test_a_pin_made_for_each_step(self):
-        """As page 7.2 says, where a Node is an index."""
-        (self.mine / "Graph.hpp").write_text(self.graph, encoding="utf-8")
-        cloth = (self.mine / "mass_spring.hpp").read_text(encoding="utf-8")
-        done = self.make_test(
-            "TASK=7.2.grid1", "mass_spring.hpp", cloth,
-            ("if (g.has_node(n)) n.pos", "assert(g.has_node(n)), n.pos"))
-        self.assertRegex(done.stdout, r"grid1: passed  2/2\n", done.stderr)
-
 
 class OwnTests(Programs):
     def grade(self, text, status=0):

@@ -119,12 +119,6 @@ class Say(unittest.TestCase):
         unknown = abort.replace("ABRT", "UNKNOWN SIGNAL").replace(
             " in raise ", " in __GI_abort ")
         for output, said in (
-                ("""chatter
-==7==ERROR: AddressSanitizer: heap-use-after-free on address 0x602 at pc 0x5
-READ of size 8 at 0x602 thread T0
-    #0 0x55 in std::f() /usr/include/c++/12/bits/x.h:3
-    #1 0x56 in Graph<int>::remove_node(int) ./Graph.hpp:41
-""", "AddressSanitizer: heap-use-after-free, READ of size 8 at Graph.hpp:41"),
                 ("./Graph.hpp:9:4: runtime error: load of 0x7f12 is bad\n",
                  "load of 0x... is bad at Graph.hpp:9"),
                 ("unit1: Graph.hpp:8: int f(): Assertion `a < b' failed.\n",
@@ -280,8 +274,8 @@ class Reports(unittest.TestCase):
         self.assertIn(f'{self.lost.section.id} {self.lost.title} '
                       f'0/{self.lost.points}.\n  Specification: '
                       f'"{self.lost.says}"\n  Did: did ]]> it.\n  Expected '
-                      f'a < b && "c", got <&>.\n  Each x is 2 times the right one.\n',
-                      text)
+                      f'a < b && "c", got <&>.\n  Each x is 2 times the '
+                      'right one.\n', text)
         self.assertIn("\nLook at this by hand:\n  Graph.hpp:3: writes", text)
 
     def test_another_language_and_other_numbers(self):
