@@ -249,8 +249,11 @@ CombinedForces make_combined_force(Fs... fs) {
   // END SOLUTION
 }
 
+// END GUIDED
+
 // ------------------------------------------------------------ The constraints
 
+// BEGIN GUIDED
 /** 6.1: the base class of all constraints; by itself no constraint. */
 struct ZeroConstraint {
   virtual ~ZeroConstraint() = default;

@@ -188,7 +188,6 @@ of_charts() {
   step lint        tools/lint.sh
   step chart_rule  python3 lab/charts/test_charts.py
   step drawn       drawn
-  step graphs      in_folder . graphs
   step crossings   crossings 20
 }
 of_readme() {

@@ -17,7 +17,8 @@ from tasks import ROOT
 GLOBS = ["LICENSE", "*.hpp", "mass_spring.cpp", "CME212/**/*.hpp",
          "tools/deps.sh", "course/tasks.toml", "course/words/*.toml",
          "course/kit/*.py", "course/kit/*.cpp", "course/tests/**/*",
-         "course/asked/*", "course/mine.hpp", "course/years/**/*"]
+         "course/asked/*", "course/mine.hpp", "course/wrong/*.json",
+         "course/years/**/*"]
 LEFT_OUT = {"kit_check.py", "mistakes.py", "grade_tests.py", "starter.py",
             "autograder.py", "synthetic.py", "constants.py"}    # and tests
 AT_THE_TOP = ["course/autograder/setup.sh", "course/autograder/run_autograder"]

@@ -4,18 +4,16 @@ files are equal, and those who can't be graded, and asks nothing of a network.
 """
 
 import collections
+import datetime
 import html
 import statistics
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import ranking
+import recognize
 import report
 import tasks
 import submission
-
-if TYPE_CHECKING:
-    from whole_class import Class
 
 STYLE = """
 :root { color-scheme: light dark; --ink: #1c1c1c; --paper: #fff; --line: #ccc;
@@ -65,11 +63,17 @@ def distribution(points: list[int], of: int) -> Iterator[str]:
 
 
 def failures(course: tasks.Course, graded: Iterable) -> list[tuple[int, str]]:
-    """[(how often, what was said)] of tasks that failed."""
-    said = collections.Counter(
-        report.outcome(course, one.result).split("\n")[0][:LONGEST]
-        for one in graded)
-    return sorted(((number, words) for words, number in said.items()),
+    """[(how often, which mistake, or else what was said)] of tasks that failed;
+    what several answer alike, and no table of mistakes has, is new."""
+    said: collections.Counter = collections.Counter()
+    for one in graded:
+        known, alike = one.result.recognized, str(one.result.mark)
+        said[(f"{one.task.shown}: {known[-1]}", "") if known[:1] == [
+            recognize.KNOWN] else (course.say(*known), "") if known else (
+            report.outcome(course, one.result).split("\n")[0][:LONGEST],
+            alike)] += 1
+    return sorted(((number, "new: " * (number > 1 and mark not in ("", "[]"))
+                    + words) for (words, mark), number in said.items()),
                   key=lambda pair: (-pair[0], pair[1]))
 
 
@@ -117,24 +121,26 @@ def equal(rows: Iterable) -> list[list[str]]:
     return [group for group in groups.values() if len(group) > 1]
 
 
-def page(whole: "Class", rows: list) -> str:
+def page(course: tasks.Course, rows: list, due: datetime.datetime | None,
+         of_host: bool) -> str:
+    """The page of whole_class.Row's; dates `of_host` or of students' clocks."""
     graded = [row.report for row in rows if row.report]
     refused = [row for row in rows if row.reason]
-    title = f"{whole.course.title}: the class"
+    title = f"{course.title}: the class"
     lines = ['<!DOCTYPE html>', '<html lang="en"><meta charset="utf-8">',
              '<meta name="viewport" content="width=device-width">',
              f"<title>{text(title)}</title><style>{STYLE}</style>",
              f"<h1>{text(title)}</h1>",
              f"<p>{len(rows)} submissions: {len(graded)} graded, "
              f"{len(refused)} that can't be.</p>"]
-    if whole.due:
+    if due:
         days = collections.Counter(row.late for row in rows if row.late)
         late = "".join(f", {number} by {day} day{'s' * (day != 1)}"
                        for day, number in sorted(days.items()))
         lines.append(f"<p>{sum(days.values())} after the deadline, "
-                     f"{text(whole.due.isoformat(' '))}{late}. Dates are "
+                     f"{text(due.isoformat(' '))}{late}. Dates are "
                      + ("the host's where it has one (TIMES).</p>"
-                        if whole.times else
+                        if of_host else
                         "what the student's clock said: a tag or a commit that "
                         "is set back counts as in time.</p>"))
     if graded:
@@ -147,11 +153,11 @@ def page(whole: "Class", rows: list) -> str:
         failed = [one for each in graded for one in each.graded
                   if not one.passed]
         if failed:
-            lines.append("<h2>Most frequent failures</h2>")
-            lines += listed(failures(whole.course, failed)[:3 * SHOWN])
+            lines.append("<h2>Most frequent mistakes and failures</h2>")
+            lines += listed(failures(course, failed)[:3 * SHOWN])
         lines.append("<h2>Sentences of the specification</h2>")
         for same in zip(*(one.graded for one in graded)):
-            lines += of_task(whole.course, same)
+            lines += of_task(course, same)
     if steps := {row.student: row.step for row in rows if row.step}:
         lines += of_steps(steps)
     if same_files := equal(rows):

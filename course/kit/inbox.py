@@ -122,7 +122,8 @@ def unpack(path: str, out: str) -> None:
 
 
 def marks(grades: str, sheet: str, column: str) -> None:
-    with open(pathlib.Path(grades) / "class.csv", newline="") as lines:
+    with open(pathlib.Path(grades) / "class.csv", newline="",
+              encoding="utf-8-sig") as lines:
         points = {row["student"].rsplit("_", 1)[-1]: row["points"]
                   for row in csv.DictReader(lines)}
     with open(sheet, newline="", encoding="utf-8-sig") as lines:

@@ -23,6 +23,7 @@ import tempfile
 import threading
 from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import diagnosis
 import markers
@@ -30,6 +31,7 @@ import mend
 import names
 import once
 import ranking
+import recognize
 import sandbox
 import units
 import years
@@ -62,6 +64,9 @@ class Result:
     did: str = ""
     name: str = ""         # of the function in the test
     answers: sandbox.Answers = field(default_factory=dict)
+    usual: recognize.Numbers = field(default_factory=dict)  # of the solution
+    mark: list = field(default_factory=list)    # of a mistake: recognize.py
+    recognized: recognize.Said = field(default_factory=list)
     doubtful: str = ""      # what a person should look at
     mended: bool = False    # "not compiled" is a function, not the submission
 
@@ -154,37 +159,14 @@ def solution() -> dict[str, bytes]:
             for name, text in markers.read_sources().items()}
 
 
-class Memory:
-    """Results of tests of other submissions that read the same files: to
-    grade many that differ little. Given to Judge, it saves most of the work."""
-
-    def __init__(self):
-        self.kept: dict[tuple[units.Way, tuple[str, ...]], list[
-            tuple[set[str], dict[str, bytes], Results]]] = {}
-
-    def recall(self, way: units.Way, tests: tuple[str, ...],
-               files: dict[str, bytes]) -> Results | None:
-        for there, read, results in self.kept.get((way, tests), []):
-            if there == files.keys() and all(
-                    files[name] == text for name, text in read.items()):
-                return dict(results)
-        return None
-
-    def keep(self, way: units.Way, tests: tuple[str, ...],
-             files: dict[str, bytes], included: set[str],
-             results: Results) -> None:
-        self.kept.setdefault((way, tests), []).append(
-            (set(files), {name: files[name] for name in included}, results))
-
-
 class Judge:
     """Grades one submission in a folder of its own."""
 
     def __init__(self, kit: once.Kit, folder: pathlib.Path,
                  files: dict[str, bytes], jobs: int,
-                 memory: Memory | None = None,
+                 memory: Any = None,
                  year: years.Year | None = None):
-        self.kit, self.memory = kit, memory
+        self.kit, self.memory = kit, memory     # kit_check.Memory
         self.jobs = threading.Semaphore(jobs)
         self.folder, self.files = folder, files
         self.seconds = 0.0      # of processor time so far
@@ -439,6 +421,7 @@ class Judge:
                     crashing, expected is not None and test == ranking.TASK)
                 self.seconds += outcome.seconds
             result = result_of(test, outcome, names, expected)
+            self.recognize(test, result, outcome)
             # What earlier homework left crashes: without it once more.
             if (outcome.aspect & ~crashing
                     and result.status in ("crashed", "stopped")):
@@ -449,6 +432,20 @@ class Judge:
                 return result
             elif not (tries := tries - 1):
                 return result
+
+
+    def recognize(self, test: str, result: Result,
+                  outcome: sandbox.Outcome) -> None:
+        usual = recognize.numbers_of(outcome.usual)
+        if self.kit.answers is None:
+            result.usual = usual
+        elif result.status == "failed":
+            right = self.kit.usual.get(test, {})
+            mark = recognize.mark((result.name, result.did, result.expected,
+                                   result.got), usual)
+            if recognize.tells(mark, right):
+                result.mark, result.recognized = mark, recognize.recognized(
+                    test, mark, usual, right)
 
 
 def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
@@ -469,7 +466,9 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
                     + "\nThat is no mistake of a student: grade on a system as "
                     "above, with [numbers] by which the cloth meets the ball")
         text = json.dumps({"secret": kit.secret.hex(), "answers": {
-            test: result.answers for test, result in results.items()}})
+            test: result.answers for test, result in results.items()},
+            "usual": {test: result.usual for test, result
+                      in results.items()}})
         with open(os.open(folder / "answers.json", os.O_WRONLY | os.O_CREAT,
                           0o600), "w", encoding="ascii") as file:
             file.write(text)
@@ -477,17 +476,19 @@ def prepare(kit: once.Kit, tests: dict[str, str], jobs: int) -> None:
     files = solution()
     kit.answers = None
     folder = kit.locked_part("solution", [
-        *once.KIT.glob("*.*"), *once.TESTS.glob("*.*"), *units.ASKED.glob("*"),
+        *once.KIT.glob("*.*"), recognize.FILE, *once.TESTS.glob("*.*"),
+        *units.ASKED.glob("*"),
         *map(markers.path_of, markers.SOURCES),
         *(once.ROOT / "CME212").rglob("*.hpp")], make,
         (sorted(tests.items()),))
     kept = json.loads((folder / "answers.json").read_text("ascii"))
     kit.data = folder / "data"
     kit.secret, kit.answers = bytes.fromhex(kept["secret"]), kept["answers"]
+    kit.usual = kept["usual"]
 
 
 def judge(kit: once.Kit, files: dict[str, bytes], tests: dict[str, str],
-          jobs: int, memory: Memory | None = None,
+          jobs: int, memory: Any = None,
           year: years.Year | None = None) -> Results:
     """{test: Result} of a submission and {test: what it needs}; `year` is that
     of an older starter."""

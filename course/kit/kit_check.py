@@ -3,15 +3,16 @@
 The solution gets all points; the starter none of those that its stubs hold
 back; each region stubbed alone turns red a test of its own section and none of
 an earlier one; each mistake of course/wrong (mistakes.py) loses what it says
-and nothing else; what pages and contracts promise is broken by one of them
-(promises.py); right submissions to older starters keep their points (years.py).
-ONLY takes the cases whose names hold WORD; EVERY takes one in
+and nothing else; right submissions to older starters keep their points
+(years.py). ONLY takes the cases whose names hold WORD; EVERY takes one in
 N of the regions and mistakes, beginning with number FIRST, by default 0: all
-FIRST < N together take each of them once.
+FIRST < N together take each of them once. With the word `mistakes` it writes
+course/wrong/answers.json instead: what each of them answers (recognize.py).
 """
 
 import concurrent.futures
 import itertools
+import json
 import os
 import pathlib
 import re
@@ -26,10 +27,11 @@ import judge
 import markers
 import mistakes
 import once
-import promises
+import recognize
 import report
 import submission
 import tasks
+import units
 import years
 
 BASES = ("solution", "simple", "forms")     # submissions that are right
@@ -147,6 +149,29 @@ class Cases:
         return faults
 
 
+class Memory:
+    """judge.Results of tests of other submissions that read the same files: to
+    grade many that differ little. Given to Judge, it saves most of the work."""
+
+    def __init__(self):
+        self.kept: dict[tuple[units.Way, tuple[str, ...]], list[
+            tuple[set[str], dict[str, bytes], judge.Results]]] = {}
+
+    def recall(self, way: units.Way, tests: tuple[str, ...],
+               files: dict[str, bytes]) -> judge.Results | None:
+        for there, read, results in self.kept.get((way, tests), []):
+            if there == files.keys() and all(
+                    files[name] == text for name, text in read.items()):
+                return dict(results)
+        return None
+
+    def keep(self, way: units.Way, tests: tuple[str, ...],
+             files: dict[str, bytes], included: set[str],
+             results: judge.Results) -> None:
+        self.kept.setdefault((way, tests), []).append(
+            (set(files), {name: files[name] for name in included}, results))
+
+
 class Check:
     """Grades the cases, two at a time, and counts."""
 
@@ -155,20 +180,26 @@ class Check:
         self.kit = once.Kit()
         self.tests = grade.tests_of(cases.course)
         judge.prepare(self.kit, self.tests, 2)
-        self.memory = judge.Memory()
+        self.memory = Memory()
         self.passed = self.failed = 0
 
-    def grade(self, files: dict[str, str]) -> report.Report:
-        taken = {name: text.encode() for name, text in files.items()}
-        results = judge.judge(self.kit, taken, self.tests, 1, self.memory)
-        return report.combine(self.cases.course, "case",
-                              submission.Submission(taken), results)
+    def judge(self, case: Case, tests: dict[str, str]) -> judge.Results:
+        return judge.judge(self.kit, {
+            name: text.encode() for name, text in case.files.items()}, tests,
+            1, self.memory)
 
     def run(self, case: Case) -> tuple[list[str], float]:
         started = time.monotonic()
-        graded = self.grade(case.files).graded
+        graded = report.combine(
+            self.cases.course, "case", submission.Submission({}),
+            self.judge(case, self.tests)).graded
         assert case.faults
         faults = case.faults({g.task.id for g in graded if not g.passed})
+        # The mistake that is named is the one that was made.
+        faults += [f"{g.task.id} is called '{name}'" for g in graded
+                   for _, name in [g.result.recognized[:2] or ("", "")]
+                   if g.result.recognized[:1] == [recognize.KNOWN]
+                   and not case.name.endswith(f": {name}")]
         # The report on tasks that should not be lost.
         for g in graded:
             if not g.passed and any(g.task.id in fault for fault in faults):
@@ -216,6 +247,36 @@ class Check:
                 self.say(case.name, *done)
 
 
+def keep_answers(check: Check) -> None:
+    """Write what each mistake answers, unless another one, or what a starter
+    leaves out, answers the same."""
+    course = check.cases.course
+    found: dict[str, list[tuple[str, list]]] = {}
+    starter = Case("starter", check.cases.base("starter"), None,
+                   frozenset(course.tasks))
+    for case in (starter, *check.cases.wrong("cloth"),
+                 *check.cases.wrong("graph")):
+        name = case.name.partition(": ")[2]
+        print(case.name, flush=True)
+        for test, result in check.judge(case, {
+                test: check.tests[test] for id in case.lost
+                for test in course.tasks[id].tests}).items():
+            if result.mark:
+                found.setdefault(test, []).append((name, result.mark))
+        write_answers(found)
+
+
+def write_answers(found: dict[str, list[tuple[str, list]]]) -> None:
+    tables = []
+    for test, marks in sorted(found.items()):
+        alone = {name: mark for name, mark in sorted(marks) if name and sum(
+            recognize.same(mark, other) for _, other in marks) == 1}
+        tables.append(f"{json.dumps(test)}: {{\n" + ",\n".join(
+            f" {json.dumps(name)}: {json.dumps(mark)}"
+            for name, mark in alone.items()) + "}")
+    recognize.FILE.write_text("{" + ",\n".join(tables) + "}\n", "ascii")
+
+
 def programs(check: Check) -> None:
     """What is held by programs of its own: they take cases by their names. Of
     the longest a sample takes one part in turn."""
@@ -223,7 +284,7 @@ def programs(check: Check) -> None:
     own = {name: value for name, value in os.environ.items()
            if name not in ("EVERY", "FIRST")}
     part = check.cases.in_turn(["Grading", "Whole",
-                                "Runner OwnTests Dates Ranks"])
+                                "Runner OwnTests Dates"])
     for name, *only in (["pages.py"], ["test_report.py"], ["test_grader.py"],
                         ["test_programs.py", *" ".join(part).split()]):
         started = time.monotonic()
@@ -240,9 +301,10 @@ def programs(check: Check) -> None:
 def main() -> bool:
     only = os.environ.get("ONLY", "")
     try:
-        if faults := promises.faults():
-            raise mistakes.MistakeError("\n".join(faults))
         check = Check(Cases())
+        if sys.argv[1:] == ["mistakes"]:
+            keep_answers(check)
+            return False
         if not only:
             programs(check)
             check.older()

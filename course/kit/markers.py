@@ -17,7 +17,9 @@ the repository's sources.
 
 A starter of the level open leaves out what students are to design: all up to
 the first OPEN, with the regions in it. Comments that name their tasks, and the
-code behind each OPEN, stand in its place.
+code behind each OPEN, stand in its place. If one of these tasks was dropped, so
+that its solution is given, its block is that of the level guided, unless it has
+no OPEN: then it is left out.
 """
 import pathlib
 import re
@@ -37,6 +39,7 @@ END = re.compile(r" *// END SOLUTION")
 BEGIN_GUIDED = re.compile(r"( *)// BEGIN GUIDED")
 END_GUIDED = re.compile(r" *// END GUIDED")
 OPEN = re.compile(r"( *)// OPEN (\S.*| +\S.*)")
+GUIDED = re.compile(r"^ *// BEGIN GUIDED\n(.*?)^ *// END GUIDED\n", re.M | re.S)
 LOOKS_LIKE_ONE = re.compile(
     r"\b(begin|end)\W+(solution|guided)\b|//\W*(stub|open)\b",
     re.IGNORECASE)
@@ -142,15 +145,20 @@ def stub(text: str, only: Container[str], course: tasks.Course | None = None,
     the tasks `only`. The comment above them names the page if the
     `course` is given.  Throws MarkerError."""
     out, left_open = [], set()
+
+    def given(block: re.Match[str]) -> str:
+        tasks_in = [found[2] for found in BEGIN.finditer(block[1])]
+        code, opens = re.subn(r"(?m)^ *// OPEN .*\n", "", block[1])
+        return (code if opens and any(task not in only for task in tasks_in)
+                else block[0])
+
+    if level == "open":
+        text = GUIDED.sub(given, text)
     for piece in split(text, file, level):
         if not isinstance(piece, Region):
             out.append(piece)
         elif piece.task not in only:
-            if piece.is_open:
-                raise MarkerError([
-                    f"{file}:{piece.line}: {piece.task} was dropped, so its "
-                    "solution is given: LEVEL=guided"])
-            out += piece.solution
+            out += () if piece.is_open else piece.solution
         elif piece.task not in left_open:
             task = course.tasks.get(piece.task) if course else None
             page = (f": course page {task.section.number}"

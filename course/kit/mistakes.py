@@ -16,9 +16,6 @@ NAME = [old, new, old, new ...], where each old text occurs once; or a table:
     picture   the name of its picture (course/pictures, the figures of the
               pages), on top of the picture `onto`
     shows     the words below that figure
-    breaks    the words of pages and contracts that it breaks, one string or
-              more: promises.py
-    open      those that leave it open, of an entry that loses nothing
 
 [default] holds values for all entries of a file.
 """
@@ -53,14 +50,6 @@ class Mistake:
     picture: str = ""
     onto: str = ""
     shows: str = ""
-    breaks: tuple = ()
-    open: tuple = ()
-
-    def __post_init__(self):
-        for key in ("breaks", "open"):      # one string may stand for a list
-            value = getattr(self, key)
-            if isinstance(value, str):
-                object.__setattr__(self, key, (value,))
 
     @property
     def where(self) -> str:

@@ -97,6 +97,7 @@ class Kit:
         # The solution sets these: judge.prepare() grades it first.
         self.secret = b""
         self.answers: Any = None
+        self.usual: Any = None      # to the usual numbers
         self.data: Any = None       # a folder
         self.assembler: dict = {}   # of standard headers: units.Room
         self.linked = sorted(linked.glob("*.o"))

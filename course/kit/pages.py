@@ -13,6 +13,7 @@ starter of the level open leaves out. It has what stands between the lines
 <!-- open and --> in its place.
 """
 import html
+import pathlib
 import re
 import sys
 import textwrap
@@ -142,9 +143,45 @@ def check(course: tasks.Course) -> list[str]:
     return wrong
 
 
+def unmet(course: tasks.Course) -> Iterator[str]:
+    """Requirements of the assignment whose words a page lacks, or that neither
+    a task, a row of the rubric nor a file of tests holds."""
+    rubric = (COURSE / "rubric.md").read_text("utf-8")
+    file = "course/requirements.toml"
+    for entry in tasks.tomllib.loads((tasks.ROOT / file).read_text("utf-8"))[
+            "requirement"]:
+        text = (COURSE / entry["page"]).read_text("utf-8")
+        for level in LEVELS:
+            said = " ".join(of_level(text, level).split())
+            yield from (f"{file}:1: '{words}' is not on {entry['page']}, level "
+                        f"{level}" for words in entry["words"]
+                        if words not in said)
+        for held in entry["held"] or [""]:
+            if not (held in course.tasks.keys() | course.dropped
+                    or held.startswith("**") and held in rubric
+                    or held and (tasks.ROOT / held).is_file()):
+                yield (f"{file}:1: nothing holds '{entry['says']}': "
+                       f"'{held}'")
+
+
+def programs(page: pathlib.Path) -> list[str]:
+    """The C++ of a page, without the words of its comments."""
+    return [re.sub(r"\s*//.*", "", code) for code in re.findall(
+        r"^```cpp\n(.*?)^```", page.read_text("utf-8"), re.M | re.S)]
+
+
+def strays(folder: pathlib.Path = COURSE / "words") -> Iterator[str]:
+    """Pages in other languages whose programs are not those of the original."""
+    for page in sorted(folder.glob("*/*.md")):
+        if programs(page) != programs(COURSE / page.name):
+            yield (f"course/words/{page.relative_to(folder)}:1: its programs "
+                   f"are not those of course/{page.name}")
+
+
 def main() -> int:
     try:
-        wrong = check(tasks.load())
+        course = tasks.load()
+        wrong = [*check(course), *unmet(course), *strays()]
     except tasks.TasksError as error:
         sys.exit(str(error))
     for fault in wrong:

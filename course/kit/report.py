@@ -88,7 +88,8 @@ def failure(course: tasks.Course, graded: Graded) -> list[str]:
     if result.did:
         lines.append(course.say("Did: {}.", result.did.rstrip(".")))
     lines += outcome(course, result).split("\n")
-    lines.append(course.say("Try: {}", task.hint))
+    if result.recognized:
+        lines.append(course.say(*result.recognized))
     return lines
 
 
@@ -165,8 +166,9 @@ def as_json(report: Report) -> str:
         if not graded.passed:
             one.update(specification=task.says, did=result.did,
                        expected=result.expected, got=result.got,
-                       message=outcome(report.course, result), hint=task.hint,
-                       test=result.name)
+                       message=outcome(report.course, result), test=result.name,
+                       recognized=report.course.say(
+                           *result.recognized or [""]))
         found.append(one)
     return dump({"version": VERSION, "course": report.course.title,
                  "submission": report.name, "points": report.points,

@@ -3,12 +3,13 @@
  * QUESTIONS REPLIES  Runs the functions of TASK that are linked in, then those
  * again that draw numbers, from a seed that the grader sends by IN once main()
  * has begun. It writes to the descriptor OUT how they ended, and what they
- * answer: the submission, with which a test shares its process, could change
- * its verdict, but who can't compute the answers can't forge them. Whether they
- * are right is known to the grader alone, who has those of the solution. PAGE
- * is memory shared with the grader; it keeps what was done last, also when the
- * program crashes or is ended. CRASHING are aspects that no test is to look at:
- * see probes() in check.hpp. QUESTIONS and REPLIES lead to law.cpp, or are -1.
+ * answer with the usual numbers and with those drawn: the submission, with
+ * which a test shares its process, could change its verdict, but who can't
+ * compute the answers can't forge them. Whether they are right is known to the
+ * grader alone, who has those of the solution. PAGE is memory shared with the
+ * grader; it keeps what was done last, also when the program crashes or is
+ * ended. CRASHING are aspects that no test is to look at: see probes() in
+ * check.hpp. QUESTIONS and REPLIES lead to law.cpp, or are -1.
  *
  * Compiled apart from the submission: its macros reach nothing here. */
 #include <sys/mman.h>
@@ -45,11 +46,13 @@ char* page = nullptr;  // "name aspect\0did\0"
 int out = -1, questions = -1, replies = -1;
 kit::Draw* draw = nullptr;  // in the second run
 bool draws = false;         // the present test has drawn a number
-std::map<std::string, std::string> answers;  // "tolerance\tnumber number ..."
+using Answers = std::map<std::string, std::string>;
+Answers answers, usual;  // "tolerance\tnumber number ..."
 unsigned long checks = 0;
 unsigned crashing = 0;  // aspects that probes() has nobody look at
 std::string test;       // the name of the present one
 bool has_failed = false;
+int misses = 0;
 
 // Any text as one line of ASCII.
 std::string plain(std::string_view text) {
@@ -70,22 +73,28 @@ void send(const std::string& line) {
 
 // The place of a text on the page: half of it each.
 void keep(int place, const std::string& text) {
-  if (!page) return;
+  if (!page || has_failed) return;
   char* const to = page + std::size_t(place) * page_size / 2;
   const std::size_t n = std::min(text.size(), page_size / 2 - 1);
   std::memcpy(to, text.data(), n);
   to[n] = '\0';
 }
 
+void send(const char* kind, const Answers& all) {
+  for (const auto& [what, numbers] : all)
+    send(kind + ('\t' + plain(what)) + '\t' + numbers);
+}
+
 // Only the first failure counts; it is sent at once, as the submission may
-// catch what is thrown next.
+// catch what is thrown next, or crash where the test goes on.
 void failed(const std::string& expected, const std::string& got) {
   if (has_failed) return;
   has_failed = true;
   send("failed\t" + plain(expected) + '\t' + plain(got));
+  send("usual", usual);
 }
 
-/** Run a function, or end the program. */
+/** Run a function: what fails with drawn numbers ends the program. */
 void run(const Test& one) {
   keep(0, test = one.name);
   keep(1, "");
@@ -94,7 +103,7 @@ void run(const Test& one) {
   } catch (const kit::Failure&) {  // no other: its trace says where it was
     failed("no exception", "one of the tests' own");  // if it is a forged one
   }
-  if (has_failed) _exit(1);
+  if (has_failed && draw) _exit(1);
 }
 
 }  // namespace
@@ -117,6 +126,10 @@ void fail(std::string expected, std::string got) {
   failed(expected, got);
   throw Failure{"", expected, got};
 }
+void miss(std::string expected, std::string got) {
+  failed(expected, got);
+  if (++misses == 10000) _exit(1);  // in a loop that has no end
+}
 
 double drawn(double usual, double least, double most) {
   draws = true;
@@ -134,9 +147,12 @@ void answer(const std::string& what, double number, double tolerance) {
   auto put = [&text](double a) {
     return std::string(text, std::to_chars(text, text + sizeof text, a).ptr);
   };
-  std::string& all = answers[what];
-  all += all.empty() ? put(tolerance) + '\t' : " ";
-  all += put(number);
+  for (Answers* to : {&answers, draw ? nullptr : &usual}) {
+    if (!to) continue;
+    std::string& all = (*to)[what];
+    all += all.empty() ? put(tolerance) + '\t' : " ";
+    all += put(number);
+  }
 }
 }  // namespace kit
 
@@ -169,13 +185,14 @@ int main(int count, char** arg) {
     run(one);
     if (draws) again.push_back(one), answers = before;
   }
+  send("usual", usual);
+  if (has_failed) _exit(1);
   for (const Test& one : again) {
     kit::Draw of_test(word, one.name);
     draw = &of_test;
     run(one);
   }
-  for (const auto& [what, numbers] : answers)
-    send("answer\t" + plain(what) + '\t' + numbers);
+  send("answer", answers);
   send("passed\t" + std::to_string(ran) + '\t' + std::to_string(checks));
   _exit(0);
 }

@@ -47,6 +47,7 @@ class Outcome:
     begun: bool = False            # main() has begun
     verdict: list[str] = field(default_factory=list)    # its fields
     answers: Answers = field(default_factory=dict)
+    usual: Answers = field(default_factory=dict)    # to the usual numbers
     name: str = ""                 # the function of the test
     did: str = ""                  # what it did last
     aspect: int = 0                # the one that it looked at: model.hpp
@@ -226,21 +227,21 @@ def run_test(jail: list[str], program: pathlib.Path, task: str, limits: Limits,
     name, did = (texts[at:at + PAGE // 2].partition(b"\0")[0]
                  .decode("ascii", "replace") for at in (0, PAGE // 2))
     name, _, aspect = name.partition(" ")
-    answers = answers_of(said)
+    answers = answers_of(said, "answer")
     if forces:
         answers["forces"] = 0, [float(forces)]
     return Outcome(stopped, process.returncode, written.text(),
                    begun == "begun", verdict[0] if verdict else [],
-                   answers, name, did,
+                   answers, answers_of(said, "usual"), name, did,
                    int(aspect) if re.fullmatch("[0-9]{1,4}", aspect) else 0,
                    seconds)
 
 
-def answers_of(said: list[list[str]]) -> Answers:
+def answers_of(said: list[list[str]], kind: str) -> Answers:
     """{name: (tolerance, numbers)} of the lines of a program."""
     answers: Answers = {}
     for words in said:
-        if words[0] == "answer" and len(words) == 4:
+        if words[0] == kind and len(words) == 4:
             try:
                 answers[words[1]] = (float(words[2]),
                                      [float(x) for x in words[3].split(" ")])

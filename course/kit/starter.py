@@ -132,13 +132,12 @@ def is_unasked(test: str, course: tasks.Course) -> bool:
 
 def table_of(course: tasks.Course) -> str:
     """The tasks as a C++ program reads them."""
-    lines = ["// X(id, title, points, says, hint): the tasks, as the course "
-             "has them."]
+    lines = ["// X(id, title, points, says): the tasks, as the course has "
+             "them."]
     for task in course.tasks.values():
         texts = [json.dumps(text) for text in (
-            task.shown, task.title, task.says, task.hint)]
-        lines.append(f"X({texts[0]}, {texts[1]}, {task.points},\n  "
-                     f"{texts[2]},\n  {texts[3]})")
+            task.shown, task.title, task.says)]
+        lines.append(f"X({texts[0]}, {texts[1]}, {task.points},\n  {texts[2]})")
     return "\n".join(lines) + "\n"
 
 

@@ -136,9 +136,12 @@ def reader(path: Folder) -> Callable[[], bytes]:
 
 
 def shown(text: object) -> str:
-    """Any name as ASCII on one line."""
-    return str(text).encode("ascii", "backslashreplace").decode().translate(
-        {code: f"\\x{code:02x}" for code in [*range(32), 127]})
+    """Any name on one line: what a terminal would obey, or show in another
+    order, is written as its code."""
+    return "".join(
+        sign if sign.isprintable() else
+        sign.encode("unicode_escape", "surrogatepass").decode()
+        for sign in str(text))
 
 
 def at(place: str, name: str) -> Entry:

@@ -54,8 +54,7 @@ class Task:
     title: str
     points: int
     says: str
-    hint: str
-    hints: tuple  # opened one by one; `hint` is the last
+    hints: tuple  # opened one by one
     tests: tuple  # names in course/tests, without .cpp: all must pass
     extra: bool  # shown, never counted
     section: Section
@@ -113,7 +112,7 @@ class Course:
 REQUIRED: dict[str, dict[str, type]] = {
     "": {"title": str, "tag": str, "section": dict, "task": dict},
     "section": {"title": str, "needs": str},
-    "task": {"title": str, "points": int, "says": str, "hint": str}}
+    "task": {"title": str, "points": int, "says": str}}
 OPTIONAL: dict[str, dict[str, type]] = {
     "": {"numbers": dict, "language": str, "starter": str},
     "section": {"page": str, "dropped": bool, "number": str},
@@ -182,8 +181,7 @@ def parse(text: str, name: str = FILE) -> Course:
                                 table.get("number", id))
                     for id, table, line in tables("section", wrong_section)}
     tasks = {id: Task(id, say(table["title"]), table["points"],
-                      say(table["says"]), say(table["hint"]),
-                      (*map(say, [*table.get("hints", []), table["hint"]]),),
+                      say(table["says"]), (*map(say, table.get("hints", [])),),
                       tuple(table.get("tests", [id])),
                       table.get("extra", False),
                       all_sections[id.rpartition(".")[0]], line)

@@ -28,7 +28,6 @@ import grade_tests
 import judge
 import markers
 import once
-import ranking
 import starter
 import submission
 import synthetic
@@ -207,15 +206,6 @@ class Runner(Programs):
         self.assertRegex(done.stdout, r"remove_node\(iterator\): FAILED  0/3"
                          r"(\n  .*)*\n  It crashed at Graph\.hpp:\d+; ")
 
-    def test_a_pin_made_for_each_step(self):
-        """As page 7.2 says, where a Node is an index."""
-        (self.mine / "Graph.hpp").write_text(self.graph, encoding="utf-8")
-        cloth = (self.mine / "mass_spring.hpp").read_text(encoding="utf-8")
-        done = self.make_test(
-            "TASK=7.2.grid1", "mass_spring.hpp", cloth,
-            ("if (g.has_node(n)) n.pos", "assert(g.has_node(n)), n.pos"))
-        self.assertRegex(done.stdout, r"grid1: passed  2/2\n", done.stderr)
-
 
 class OwnTests(Programs):
     def grade(self, text, status=0):
@@ -263,24 +253,6 @@ def at(text):
 
 
 class Dates(unittest.TestCase):
-    def late(self, due, *moments):
-        return [dates.days_late(at(moment), dates.deadline(due))
-                for moment in moments]
-
-    def test_to_the_second_in_any_zone(self):
-        self.assertEqual(self.late(
-            "2026-02-14 16:30 -0800",
-            "2026-02-14T16:30:00-08:00", "2026-02-15T00:30:00+00:00",
-            "2026-02-15T00:30:01+00:00", "2026-02-15T06:15:01+05:45",
-            "2026-02-15T16:30:00-08:00", "2026-02-15T16:30:01-08:00",
-            "2026-02-15T14:30:00+14:00"), [0, 0, 1, 1, 1, 2, 0])
-
-    def test_bad_deadlines(self):
-        for text in ("2026-02-14 16:30", "2026-02-30 16:30 -0800", "x"):
-            with self.assertRaisesRegex(submission.BadInput,
-                                        "expected a date, a time and its"):
-                dates.deadline(text)
-
     def test_times_of_a_host(self):
         file, commit = self.enterContext(tempfile.NamedTemporaryFile("w")), "a1"
         for text, why in (("x", ":1: expected a commit"), (
@@ -308,20 +280,6 @@ class Dates(unittest.TestCase):
         for odd in ("", "committer A <a> 99999999999999 +0000", "committer <>",
                     "committer A <a> 5 +9999", "author A <a> 5 +0000"):
             self.assertIsNone(date(odd))
-
-
-class Ranks(unittest.TestCase):
-    def test_ranks_by_the_share_of_symplectic_eulers_error(self):
-        expected = {"first": (0.5, [1.0, 2.0]), "second": (0.05, [3.0])}
-        for forces, shown in ((1599.96, 1600), (float("nan"), 0)):
-            self.assertEqual(ranking.measured(
-                {"first": (0, [1.0, 1.9]), "second": (0, [3.02]),
-                 "forces": (0, [forces])}, expected), (0.2, shown))
-        self.assertEqual(
-            list(ranking.ranks({"d": (0.2, 3), "a": (0.1, 4), "c": (0.3, 5),
-                                "b": (0.2, 6)}).items()),
-            [("a", (1, 0.1, 4)), ("b", (2, 0.2, 6)), ("d", (2, 0.2, 3)),
-             ("c", (4, 0.3, 5))])
 
 
 class Whole(Programs):

@@ -14,30 +14,37 @@ that is no fault of theirs.
 """
 
 import concurrent.futures
+import csv
 import dataclasses
+import datetime
 import fcntl
 import hashlib
+import io
 import json
 import os
 import pathlib
 import resource
 import signal
+import statistics
 import sys
 from dataclasses import dataclass, field
 from typing import Any
 
 import child
-import class_output
+import class_page
 import dates
 import grade
 import judge
 import once
 import ranking
+import report
 import submission
 import tasks
 import years
 
 KEPT = "kept"
+COLUMNS = ("student", "commit", "tag", "kind of tag", "tagged", "committed",
+           "pushed", "time", "days late", "points", "of")
 
 
 @dataclass
@@ -169,6 +176,7 @@ class Class:
                                         year=year).items():
             kept = dataclasses.asdict(result)
             answers = kept.pop("answers")
+            del kept["usual"]
             if test == ranking.TASK and result.passed:
                 kept["step"] = ranking.measured(answers, self.kit.answers[test])
             known[test] = kept | {"kit": self.version}
@@ -236,6 +244,96 @@ class Class:
         return all("the grader fails" not in row.reason for row in rows)
 
 
+# ------------------------------------------------------------ What it leaves
+
+
+def made(whole: Class, row: Row) -> report.Report:
+    """The report on a row, from what is kept of its content."""
+    kept = whole.known(row.content)
+    results = {test: judge.Result(**{
+        key: value for key, value in kept[test].items()
+        if key not in ("kit", "step")}) for test in whole.tests}
+    row.step = kept.get(ranking.TASK, {}).get("step")
+    taken = submission.Submission({}, row.notes, row.flags)
+    course = row.year.course(whole.course) if row.year else whole.course
+    return report.combine(course, submission.shown(row.student), taken,
+                          results)
+
+
+def write(whole: Class, rows: list[Row]) -> None:
+    folder = whole.out / "reports"
+    folder.mkdir(exist_ok=True)
+    texts = {}
+    for row in rows:
+        text = f"This can't be graded: {row.reason}.\n"
+        if not row.reason:
+            row.report = made(whole, row)
+            text = report.as_text(row.report, whole.feedback)
+            texts[f"{row.student}.json"] = report.as_json(row.report)
+        texts[f"{row.student}.txt"] = text
+    for old in {path.name for path in folder.iterdir()} - texts.keys():
+        (folder / old).unlink()
+    for name, text in texts.items():
+        grade.write(folder / name, text)
+    # A spreadsheet knows by the first character that it is UTF-8.
+    grade.write(whole.out / "class.csv", "\ufeff" + table(whole, rows))
+    grade.write(whole.out / "class.html", class_page.page(
+        whole.course, rows, whole.due, bool(whole.times)))
+
+
+def table(whole: Class, rows: list[Row]) -> str:
+    """A line for each student: CSV."""
+    text = io.StringIO()
+    lines = csv.writer(text, lineterminator="\n")
+    ids = list(whole.course.tasks)
+    ranked = ranking.COLUMNS if ranking.TASK in ids else ()
+    ranks = ranking.ranks({row.student: row.step for row in rows if row.step})
+    shown = (task.shown for task in whole.course.tasks.values())
+    lines.writerow([*COLUMNS, *shown, *ranked, "note"])
+    same = {name: group for group in class_page.equal(rows) for name in group}
+    zone = whole.due.tzinfo if whole.due else datetime.timezone.utc
+    for row in rows:
+        made = row.made
+        dates = [time and time.isoformat(" ") for time in (
+            made.tagged, made.committed, made.pushed, made.time
+            and made.time.astimezone(zone))]
+        points: list = [""] * (2 + len(ids))
+        notes = [row.reason] if row.reason else list(row.notes)
+        if row.report:
+            notes = list(row.report.notes)
+            points = [row.report.points, row.report.of,
+                      *(graded.points for graded in row.report.graded)]
+            if row.report.flags:
+                notes.append(f"{len(row.report.flags)} lines to look at by "
+                             "hand: the report")
+        name = submission.shown(row.student)
+        others = [other for other in same.get(name, []) if other != name]
+        if others:
+            notes.append("the same files as " + " ".join(others))
+        lines.writerow([
+            # Not a formula, where a spreadsheet opens the table.
+            "'" * name.startswith(tuple("=+-@")) + name, made.commit,
+            whole.tag if made.commit else "", made.kind, *dates, row.late,
+            *points, *ranks.get(row.student, [""] * len(ranked)),
+            "; ".join(notes)])
+    return text.getvalue()
+
+
+def summary(whole: Class, rows: list[Row]) -> str:
+    """What make class says at last."""
+    graded = [row.report.points for row in rows if row.report]
+    lines = [f"{len(rows)} submissions: {len(graded)} graded, "
+             f"{len(rows) - len(graded)} that can't be"]
+    if whole.due:
+        late = sum(bool(row.late) for row in rows)
+        lines[0] += f", {late} late (after {whole.due.isoformat(' ')})"
+    if graded:
+        lines.append(f"median {statistics.median(graded):g} of "
+                     f"{whole.course.points} points")
+    lines += [f"written: {whole.out}/class.csv class.html reports/"]
+    return "\n".join(lines) + "\n"
+
+
 THE_CLASS: Class    # of run(), in each worker, too
 
 
@@ -264,10 +362,10 @@ def run() -> int:
                 whole.jobs, initializer=ends_with_us) as pool:
             rows = whole.rows(pool)
             fine = whole.grade_all(rows, pool)
-            class_output.write(whole, rows)
+            write(whole, rows)
         for path in whole.out.rglob(".new-*"):      # of runs that were ended
             path.unlink()
-        print(class_output.summary(whole, rows), end="")
+        print(summary(whole, rows), end="")
     return 0 if fine else 2
 
 

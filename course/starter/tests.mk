@@ -42,6 +42,12 @@ endif
 
 # The tasks whose hints were opened are lines of $(B)/hints.
 .PHONY: hint
+ifeq ($(TASK),)
+hint:
+	@cat $(B)/hints 2>/dev/null | awk -F '\t' 'FILENAME == "-" { --n[$$0]; next } \
+	  { ++n[$$1] } !all[$$1]++ { task[++k] = $$1 } END { for (i = 1; i <= k; ++i) \
+	  if (n[task[i]] > 0) print task[i] ": " n[task[i]] " left" }' - tests/hints
+else
 hint:
 	@cut -f 1 tests/hints | grep -qxF '$(TASK)' || \
 	  { echo "TASK is '$(TASK)', expected one of:" \
@@ -51,6 +57,7 @@ hint:
 	  $$1 == task && ++all <= n { print "Hint " all ": " $$2 } \
 	  END { print n < all ? all - n " left" : "That is all." }' \
 	  $(B)/hints tests/hints | fold -sw 80
+endif
 
 .SECONDEXPANSION:
 $(sections:%=$(B)/tests/%): $(B)/tests/%: $$(together) $(frame) $(built_by)

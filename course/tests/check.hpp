@@ -8,7 +8,9 @@
  *   CHECK(condition, "the loop ends");       "Expected: the loop ends."
  *   CHECK(condition);                        "Expected: condition."
  *
- * A check that fails ends its test. The name of a test is unique in all files.
+ * A check that fails ends its test; with a grader it goes on, to answer what it
+ * is asked: answers tell one mistake from another. The name of a test is unique
+ * in all files.
  * A test file includes graph.hpp or cloth.hpp, which bring this file: it comes
  * after the submission's headers, so that their macros change nothing here. */
 #ifndef KIT_CHECK_HPP
@@ -37,6 +39,8 @@ struct Failure {
 };
 void did(std::string what);
 [[noreturn]] void fail(std::string expected, std::string got);
+/** The same of a check after which the test may go on. */
+void miss(std::string expected, std::string got);
 /** A check has begun. */
 void checked();
 /** An aspect (model.hpp) is looked at before the test does anything; 0: it is
@@ -109,10 +113,9 @@ inline constexpr char in_float[] = ", as near as a float: is there one?";
 void check(bool holds, const char* what);
 void check(bool holds, const std::string& what);
 /** Two values differ that should be equal, or near. */
-[[noreturn]] void differ(const Word& what, const Word& expected,
-                         const Word& got);
-[[noreturn]] void differ(const Word& what, const Word& expected,
-                         double tolerance, const Word& got);
+void differ(const Word& what, const Word& expected, const Word& got);
+void differ(const Word& what, const Word& expected, double tolerance,
+            const Word& got);
 
 inline void check_said(const char* condition, bool holds) {
   check(holds, condition);
