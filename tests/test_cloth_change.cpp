@@ -69,22 +69,9 @@ TEST_F(ClothProgram, KnowsTheStiffestStretchBeforeItStarts) {
   EXPECT_LT(last, limit("--method verlet --stiffness 10000"));
 }
 
-TEST_F(ClothProgram, GoesOnAfterChangesToTheSameBits) {
-  const std::string scene =
-      net +
-      "--dt 0.00390625 --method verlet --at '0.03125 unpin 3' "
-      "--at '0.0625 stiffness 300' --at '0.0625 cut 27 28' "
-      "--at '0.0703125 pin 36' --at '0.125 gravity 3' ";
-  const auto end = [this](const std::string& options) {
-    success(options + " --out " + path("end.net"));
-    return contents(path("end.net"));
-  };
-  const std::string right = end(scene + "--t-end 0.25");
-  for (const char* when : {"0.046875", "0.0625", "0.09375", "0.1875"}) {
-    end(scene + "--t-end " + when + " --checkpoint " + path("c"));
-    EXPECT_EQ(end("--headless --t-end 0.25 --restart " + path("c")), right)
-        << when;
-  }
+TEST_F(ClothProgram, GoesOnWithTheChangesThatWereMade) {
+  success(net + "--at '0.03125 unpin 3' --t-end 0.05 --checkpoint " +
+          path("c"));
   const Result r =
       run("--headless --t-end 0.25 --at '0.03125 unpin 4' "
           "--restart " +

@@ -42,9 +42,9 @@ class Run:
         if done.returncode == -SIGXCPU:
             raise subprocess.TimeoutExpired(done.args, 60)
         self.status, self.text = done.returncode, joined(done.stdout)
-        # Each with its cure and its place.
+        # Each with its cure and its place, without how far a slow run is.
         self.said = [" ".join(a.split()) for a in re.findall(
-            r"^cloth:.*(?:\n(?!cloth:).*)*", done.stderr, re.M)]
+            r"^cloth:.*(?:\n(?!cloth:|t = ).*)*", done.stderr, re.M)]
         self.bits, self.rows = (
             f.read_text() if f.exists() else "" for f in files)
 

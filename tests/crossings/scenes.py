@@ -188,8 +188,9 @@ class Draw:
         """Less or more than the nodes are apart, up to a refusal."""
         apart = min(float(norm(a - b))
                     for a, b in combinations(Net(self.s).x, 2))
-        return {"thickness": self.number(.2 * apart, 1.2 * apart)} | self.some(
-            .5, friction=self.number(.05, 1))
+        far = .2 if self.chance(.7) else 1.2  # touching nodes have no truth
+        return {"thickness": self.number(.05 * apart, far * apart)
+                } | self.some(.5, friction=self.number(.05, 1))
 
     def gravity(self) -> Any:  # a number acts down, whatever its sign
         if self.chance(.3):
