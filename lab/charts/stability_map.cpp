@@ -25,8 +25,8 @@
 #include <CLI/CLI.hpp>
 
 #include "CME212/OutputFile.hpp"
+#include "lab/charts/Cell.hpp"
 #include "lab/charts/Growth.hpp"
-#include "lab/charts/Report.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/run/Progress.hpp"
@@ -34,8 +34,6 @@
 #include "lab/stability/StepLimit.hpp"
 
 using namespace lab;
-
-using report::cell;
 
 namespace {
 
@@ -124,8 +122,8 @@ void run(std::vector<Cell> cells, const std::filesystem::path& folder) {
 /** Write the file of the map from those of @a cells. */
 void join(const std::vector<Cell>& cells, const std::filesystem::path& folder) {
   CME212::OutputFile file(folder / "stability_limits.csv");
-  report::write_head(file.stream(), "stability; columns: lab/charts/README.md");
-  file.stream() << "# map limits: the largest stable step on a sheet stretched "
+  file.stream() << "# stability; columns: lab/charts/README.md\n"
+                   "# map limits: the largest stable step on a sheet stretched "
                    "to 1.5 times its size and held at its rim; drag 1 1/s\n"
                    "side,mesh,method,predicted [s],measured [s],safe [s]\n";
   for (const Cell& cell : cells)
