@@ -88,8 +88,8 @@ stability: stability_map
 	@mkdir -p $(SWEEP) $(maps_in)
 	@find $(SWEEP) -name '*.csv' ! -newer $(B)/stability_map -delete
 	@$(B)/stability_map $(SWEEP) --effort $(EFFORT)
-	@{ echo "# $(measured_on)"; cat $(SWEEP)/stability_limits.csv; } \
-	  > $(maps_in)/stability_limits.csv
+	@cp $(SWEEP)/stability_*.csv $(maps_in)
+	@sed -i "1i # $(measured_on)" $(maps_in)/stability_limits.csv
 	@$(draw) stability_limits --folder $(maps_in)
 
 # More of test_limits than a commit needs: grids up to 100 x 100 nodes, and

@@ -25,6 +25,7 @@
 #include <CLI/CLI.hpp>
 
 #include "CME212/OutputFile.hpp"
+#include "lab/charts/Cell.hpp"
 #include "lab/charts/Growth.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
@@ -71,12 +72,11 @@ void add_limits(std::vector<Cell>& cells, Effort effort) {
           const Problem p = stretched_sheet(side, mesh, 1.5, 1);
           auto [safe, sharp] = frequencies(p);
           const double least = step_limit(m, safe, 1);
-          const double measured =
-              measured_sheet_limit(p, m, 0.8 * least, 1.6 * least, steps);
           out << side << ',' << name_of(mesh) << ',' << name << ','
-              << step_limit(m, sharp, 1) << ',';
-          if (std::isfinite(measured)) out << measured;
-          out << ',' << least << '\n';
+              << cell(step_limit(m, sharp, 1)) << ','
+              << cell(measured_sheet_limit(p, m, 0.8 * least, 1.6 * least,
+                                           steps))
+              << ',' << cell(least) << '\n';
         };
         cells.push_back({"limits-" + std::to_string(side) + '-' +
                              name_of(mesh) + '-' + name,
@@ -122,8 +122,8 @@ void run(std::vector<Cell> cells, const std::filesystem::path& folder) {
 /** Write the file of the map from those of @a cells. */
 void join(const std::vector<Cell>& cells, const std::filesystem::path& folder) {
   CME212::OutputFile file(folder / "stability_limits.csv");
-  file.stream() << "# stability; columns: lab/charts/README.md\n";
-  file.stream() << "# map limits: the largest stable step on a sheet stretched "
+  file.stream() << "# stability; columns: lab/charts/README.md\n"
+                   "# map limits: the largest stable step on a sheet stretched "
                    "to 1.5 times its size and held at its rim; drag 1 1/s\n"
                    "side,mesh,method,predicted [s],measured [s],safe [s]\n";
   for (const Cell& cell : cells)

@@ -23,6 +23,7 @@
 
 #include "CME212/OutputFile.hpp"
 #include "CME212/Util.hpp"
+#include "lab/charts/Cell.hpp"
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
@@ -34,20 +35,6 @@
 using namespace lab;
 
 namespace {
-
-/** @a a as a cell of the table, six digits; empty if it is not finite. */
-std::string cell(double a) {
-  if (!std::isfinite(a)) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", a);
-  return text;
-}
-/** @a text as a cell, without commas, quotes and ends of lines. */
-std::string cell(std::string text) {
-  for (char& c : text)
-    if (c == ',' || c == '"' || c == '\n') c = ';';
-  return text;
-}
 
 struct Options {
   std::vector<std::string> scenes, methods;
