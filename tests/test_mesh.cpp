@@ -222,9 +222,13 @@ TEST(ParseNet, TakesWhatASpringSystemIs) {
       "# a weight below a held node, and a thread\n"
       "node 0 0 0 held\nnode 0 0 -0.5 mass 2 velocity 0 0 1\nnode 1 0 0\n"
       "node 1 1 0\nspring 0 1 50 0.4\nspring 1 2 8\nspring 0 2\n"
-      "face 0 1 2\nface 0 2 3 1\nbare-faces\n";
+      "face 0 1 2\nface 0 2 3 1\nbare-faces\n"
+      "spring 1 3 K 5 L 2 cable\nspring 2 3 strut L 0.5\nload 3 0 1 -2\n";
   const lab::Net net = lab::parse_net(text, "a.net");
-  EXPECT_EQ(shape(net), "4 2 3: 0-1-2 0-2-3-1");
+  EXPECT_EQ(shape(net), "4 2 5: 0-1-2 0-2-3-1");
+  EXPECT_EQ(net.springs[3], (lab::Spring{1, 3, 5, 2, lab::Acts::pulls}));
+  EXPECT_EQ(net.springs[4], (lab::Spring{2, 3, -1, 0.5, lab::Acts::pushes}));
+  EXPECT_EQ(net.loads, (std::vector<lab::Load>{{3, Point(0, 1, -2)}}));
   EXPECT_EQ(net.held, std::vector<unsigned>{0});
   EXPECT_EQ(net.masses, (std::vector<double>{0.25, 2, 0.25, 0.25}));
   EXPECT_EQ(net.velocities[1], Point(0, 0, 1));

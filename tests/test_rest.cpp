@@ -5,9 +5,10 @@
 #include <memory>
 #include <numbers>
 
+#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Measure.hpp"
-#include "lab/stepping/Scene.hpp"
+#include "lab/stepping/RestReport.hpp"
 #include "lab/stepping/Trial.hpp"
 #include "tests/Says.hpp"
 
@@ -258,6 +259,106 @@ TEST(Rest, IsWhereDragEnds) {
                 1e-7)
           << k << ' ' << floor;
   }
+}
+
+Measure tension(unsigned i, unsigned j) {
+  Measure m = Measure::tension;
+  m.between = {i, j};
+  return m;
+}
+
+TEST(Net, CablesHangAsSpringsDo) {
+  Net net = chain(10, 0.8, 100, 0.1, 0.01);
+  for (Spring& s : net.springs) s.acts = Acts::pulls;
+  const auto s = at_rest(net);
+  const Catenary c(10, 0.8, 100, 0.1, 0.01);
+  for (unsigned k = 0; k < 10; ++k) {
+    EXPECT_LT(norm(s->cloth().node(k).position() - c.points[k]), 1e-8);
+    EXPECT_NEAR(answer(*s, tension(k + 1, k))[0],
+                std::hypot(c.H, c.V - k * 0.01 * grav), 1e-7);
+  }
+  EXPECT_NEAR(answer(*s, Measure::max_tension)[0], std::hypot(c.H, c.V), 1e-7);
+  EXPECT_TRUE(has(error_of([&] { answer(*s, tension(0, 2)); }), "no spring"));
+}
+
+TEST(Net, ASlackSpringCarriesNothing) {
+  for (const Acts acts : {Acts::pulls, Acts::pushes}) {
+    const bool pulls = acts == Acts::pulls;
+    Net net;  // a weight between two held nodes, pushed to one of them
+    net.points = {Point(-1, 0, 0), Point(1, 0, 0), Point()};
+    net.springs = {{0, 2, 100, 1, acts}, {2, 1, 100, 1, acts}};
+    net.held = {0, 1};
+    net.loads = {{2, Point(4, 0, 0)}, {2, Point(6, 0, 0)}, {0, Point(0, 0, 5)}};
+    Model m;
+    m.gravity = 0, m.from_rest = true;
+    Scene s(m, net), moves(m, net, {.dt = 0.001}, table::xpbd);
+    ASSERT_TRUE(moves.run_to(0.1));
+    for (const auto& [scene, error] : {std::pair(&s, 1e-8), {&moves, 0.01}}) {
+      EXPECT_NEAR(scene->cloth().node(2).position().x, 0.1, error) << "F/K";
+      EXPECT_NEAR(answer(*scene, tension(0, 2))[0], pulls ? 10 : 0, error);
+      EXPECT_NEAR(answer(*scene, tension(1, 2))[0], pulls ? 0 : -10, error);
+      EXPECT_NEAR(answer(*scene, Measure::pin_force)[0], std::hypot(10, 5),
+                  error);
+    }
+    EXPECT_NEAR(s.energy().elastic, 0.5, 1e-9) << "F^2/2K";
+    EXPECT_NEAR(s.energy().gravitational, -1, 1e-9) << "-F x";
+    const RestReport report(s);
+    EXPECT_EQ(report.stable(), pulls) << "a strut buckles";
+    EXPECT_TRUE(has(report.text(), pulls ? "slack: that of nodes 2 and 1\n"
+                                         : "slack: that of nodes 0 and 2\n"));
+    EXPECT_EQ(net_left(s.cloth(), s.mesh(), s.held()).springs[0].acts, acts);
+  }
+}
+
+TEST(Net, AWeightFallsUntilItsCableIsTaut) {
+  Net net;
+  net.points = {Point(), Point(0, 0, -0.5)};
+  net.masses = {1, 1};
+  net.springs = {{0, 1, 1000, 1, Acts::pulls}};
+  net.held = {0};
+  net.loads = {{1, Point(3, 0, 0)}};
+  for (const MethodEntry& method : methods) {
+    Scene s({}, net, {.dt = 0.001}, method);
+    ASSERT_TRUE(s.run_to(0.25)) << method.info.name;
+    const double t2 = 0.25 * 0.25 / 2;
+    EXPECT_LT(
+        norm(s.cloth().node(1).position() - Point(3 * t2, 0, -0.5 - grav * t2)),
+        method.info.order > 1 ? 1e-9 : 2e-3)
+        << method.info.name;
+    EXPECT_EQ(s.energy().elastic, 0) << method.info.name;
+    if (const double safe = s.safe_limit(); safe < no_limit) {
+      EXPECT_NEAR(s.stepper().sharp_limit(), safe, 1e-3 * safe) << "if taut";
+    }
+    if (method.info.limit == 0) continue;
+    ASSERT_TRUE(s.run_to(1)) << method.info.name;
+    EXPECT_GT(norm(s.cloth().node(1).position()), 0.5) << method.info.name;
+  }
+  Scene fine({}, net, {.dt = 1e-5}, table::verlet);
+  const double start = fine.energy().total();
+  ASSERT_TRUE(fine.run_to(2));
+  EXPECT_NEAR(fine.energy().total(), start, 1e-3);
+  Model tears;
+  tears.tears = {{Point(), 1}};
+  EXPECT_TRUE(has(error_of([&] { Scene(tears, net); }), "--tear removes"));
+}
+
+TEST(Net, HasTheSameBitsForEveryNumberOfThreads) {
+  Net net;
+  net.points = grid_points(40);
+  for (const Quad& q : grid_quads(40))
+    for (const unsigned k : {1u, 2u, 3u})
+      net.springs.push_back(
+          {q[0], q[k], 100, -1, k == 3 ? Acts::pushes : Acts::pulls});
+  net.held = {0, 39};
+  std::vector<std::vector<Point>> ends;
+  for (const int threads : {1, 3, 0}) {
+    Sweep::set_threads(threads);
+    Scene s({}, net, {.dt = 5e-4}, table::verlet);
+    ASSERT_TRUE(s.run_to(0.05));
+    const auto x = arrays(s.cloth()).positions();
+    ends.emplace_back(x.begin(), x.end());
+  }
+  EXPECT_EQ(ends[0], ends[1]);
 }
 
 TEST(Rest, ARunBeginsThere) {

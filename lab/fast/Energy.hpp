@@ -37,6 +37,9 @@ inline double spring_energy(double l, const EdgeData& s) {
   return 0.5 * s.K * (l - s.L) * (l - s.L);
 }
 
+/** Which way a spring acts: a cable pulls only, a strut pushes only. */
+enum class Acts : signed char { pushes = -1, both = 0, pulls = 1 };
+
 // ------------------------------------------------------------------- Energies
 
 /** Sum of m |v|^2 / 2 [J].  O(N) */

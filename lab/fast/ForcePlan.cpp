@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <mutex>
+#include <typeinfo>
 #include <utility>
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/fast/LoadForce.hpp"
+#include "lab/fast/OneWaySprings.hpp"
 
 namespace lab {
 
@@ -31,14 +34,27 @@ void add_spring_stiffness(const Cloth& g, const StiffnessVisitor& use) {
 
 }  // namespace
 
+double Potential::elastic_energy(const Cloth& g) const {
+  return one_way ? one_way->energy(g) : lab::elastic_energy(g);
+}
+
+double Potential::gravitational_energy(const Cloth& g) const {
+  const double sum = lab::gravitational_energy(g, gravity);
+  return loads ? sum + loads->energy(g) : sum;
+}
+
+Point Potential::load(const Node& n) const {
+  return loads ? (*loads)(n, 0) : Point();
+}
+
 void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   const ZeroForce& f = *force;
   if (auto sum = exactly<CombinedForces, FunctionForce>(f)) {
     for (const auto& part : sum->parts) add(part);
   } else if (auto weight = exactly<GravityForce, FunctionForce>(f)) {
-    gravity_.a.z -= weight->gravity;
+    potential_.gravity.a.z -= weight->gravity;
   } else if (auto tilt = exactly<SidewaysForce, FunctionForce>(f)) {
-    gravity_.a += Point(tilt->x, tilt->y, 0);
+    potential_.gravity.a += Point(tilt->x, tilt->y, 0);
   } else if (exactly<MassSpringForce, FunctionForce>(f)) {
     ++springs_;
   } else if (auto drag = exactly<DampingForce, FunctionForce>(f)) {
@@ -46,6 +62,10 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   } else if (auto drags = exactly<NodeDrag, FunctionForce>(f)) {
     drag_.add(*drags);
   } else if (!exactly<ZeroForce, FunctionForce>(f)) {
+    if (auto one_way = std::dynamic_pointer_cast<const OneWaySprings>(force))
+      potential_.one_way = std::move(one_way);
+    if (typeid(f) == typeid(LoadForce))
+      potential_.loads = std::static_pointer_cast<const LoadForce>(force);
     others_.push_back({std::move(force), dynamic_cast<const SweptForce*>(&f)});
   }
 }
@@ -64,7 +84,7 @@ bool ForcePlan::has_others() const {
 }
 
 double ForcePlan::energy(const Cloth& g) const {
-  double sum = gravitational_energy(g, gravity_);
+  double sum = gravitational_energy(g, potential_.gravity);
   if (springs_ > 0) sum += springs_ * elastic_energy(g);
   for (const Other& other : others_)
     if (other.swept) sum += other.swept->energy(g);
@@ -77,6 +97,11 @@ bool ForcePlan::add_stiffness(const Cloth& g,
   return std::ranges::all_of(others_, [&](const Other& other) {
     return other.swept && other.swept->add_stiffness(g, use);
   });
+}
+
+void ForcePlan::add_slack(const Cloth& g, const StiffnessVisitor& use) const {
+  for (const Other& other : others_)
+    if (other.swept) other.swept->add_slack(g, use);
 }
 
 std::optional<int> ForcePlan::spring_multiplicity() const {

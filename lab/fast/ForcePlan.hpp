@@ -60,6 +60,29 @@ class SweptForce : public ZeroForce {
   virtual std::optional<int> spring_multiplicity() const {
     return std::nullopt;
   }
+  /** Call @a use as add_stiffness() for the pairs that have none now, but may
+   * get it in a step: with what it is then. Bounds of steps count it. */
+  virtual void add_slack(const Cloth& /*g*/,
+                         const StiffnessVisitor& /*use*/) const {}
+};
+
+class LoadForce;
+class OneWaySprings;
+
+/** What stores the energy of a cloth besides its motion. */
+struct Potential {
+  Gravity gravity;
+  std::shared_ptr<const OneWaySprings> one_way = {};  ///< null: no such springs
+  std::shared_ptr<const LoadForce> loads = {};        ///< null: none
+  // Implicit: gravity alone, and springs that pull and push.
+  Potential(double g = grav) : gravity(g) {}   // NOLINT
+  Potential(const Gravity& a) : gravity(a) {}  // NOLINT
+  /** The energy of all springs [J].  O(number of edges) */
+  double elastic_energy(const Cloth& g) const;
+  /** That of weight and loads [J], zero at the origin.  O(N) */
+  double gravitational_energy(const Cloth& g) const;
+  /** The load on @a n [N]. */
+  Point load(const Node& n) const;
 };
 
 /** The course's function for forces of which one is swept: such a force stays
@@ -93,7 +116,9 @@ class ForcePlan {
   long long evaluations() const { return evaluations_; }
   void count_evaluation() const { ++evaluations_; }
   /** The sum of all terms GravityForce and SidewaysForce. */
-  const Gravity& gravity() const { return gravity_; }
+  const Gravity& gravity() const { return potential_.gravity; }
+  /** That, and the terms OneWaySprings and LoadForce. */
+  const Potential& potential() const { return potential_; }
   /** The energy [J] of weight, springs, and swept forces that have one. */
   double energy(const Cloth& g) const;
   /** The sum of its terms -c v: drag()[id] is the c [kg/s] of a node. */
@@ -102,6 +127,8 @@ class ForcePlan {
    * is a term by call. With drag() it is the derivative of the force with
    * respect to the state. */
   bool add_stiffness(const Cloth& g, const StiffnessVisitor& use) const;
+  /** As SweptForce::add_slack(). */
+  void add_slack(const Cloth& g, const StiffnessVisitor& use) const;
   /** How many times it contains the springs of the edges; nullopt if it reads
    * positions of other nodes in any other way. If not nullopt, no direction
    * between two nodes is stiffer than that many K, and the force on a node may
@@ -116,7 +143,7 @@ class ForcePlan {
     const SweptForce* swept;  // the same; null: it is called
     bool acts() const { return !swept || swept->acts(); }
   };
-  Gravity gravity_ = 0.;
+  Potential potential_ = 0.;
   int springs_ = 0;
   std::vector<Other> others_;  // in their order
   Drag drag_;

@@ -185,7 +185,7 @@ RunReadings Live::Side::readings(bool sharp) {
   r.safe_limit = safe_limit, r.sharp_limit = sharp_limit;
   r.steps = scene->steps(), r.time = scene->time();
   count(), r.work = work;
-  r.energy = energies(scene->cloth(), scene->model().gravity, scene->flow());
+  r.energy = scene->energy();
   r.drift = scene->stepper().drift(r.energy);
   r.failure = scene->failure();
   return r;

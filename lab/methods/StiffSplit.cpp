@@ -110,6 +110,9 @@ class SoftStiffness final : public SweptForce {
             use(i, j, B);
         });
   }
+  void add_slack(const Cloth& g, const StiffnessVisitor& use) const override {
+    force_.add_slack(g, use);
+  }
 
  private:
   ForcePlan force_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/fast/OneWaySprings.hpp"
 #include "lab/methods/ImplicitStage.hpp"
 
 namespace lab {
@@ -18,8 +19,8 @@ bool check_springs(const Cloth& g, const ForcePlan& force) {
   struct {
     const Cloth& g;
     unsigned edge, seen;
-    bool other;
-  } look = {g, 0, 0, false};
+    bool other, one_way;
+  } look = {g, 0, 0, false, force.potential().one_way != nullptr};
   implicit_detail::add_stiffness(
       Xpbd::info.name, force, g,
       [&look](unsigned i, unsigned j, const Stiffness& B) {
@@ -29,7 +30,8 @@ bool check_springs(const Cloth& g, const ForcePlan& force) {
         ++look.seen;
         if (look.edge == arrays(look.g).edge_slots() ||
             arrays(look.g).edge_ends()[look.edge] != std::array{i, j} ||
-            arrays(look.g).edge_values()[look.edge].K != B.along)
+            (arrays(look.g).edge_values()[look.edge].K != B.along &&
+             !(look.one_way && B.along == 0)))  // slack
           look.other = true;
         else
           ++look.edge;
@@ -48,6 +50,7 @@ bool check_springs(const Cloth& g, const ForcePlan& force) {
 double Xpbd::step(Cloth& g, double t, double dt, const ForcePlan& force,
                   const ConstraintPlan& constraint) {
   const bool springs = check_springs(g, force);
+  one_way_ = force.potential().one_way;
   implicit_detail::find_fixed(g, constraint, fixed_);
   constraint.place_held_at_rest(g, t);
   accelerate(g, t, force, springs);
@@ -85,7 +88,10 @@ void Xpbd::accelerate(Cloth& g, double t, const ForcePlan& force,
   acceleration_.resize(n);
   for (unsigned i = 0; i < n; ++i) acceleration_[i] = flow_.acceleration(i);
   if (!springs) return;
-  flow_.accelerate(g, t, springs_, true);
+  if (one_way_)
+    flow_.accelerate(g, t, *one_way_, true);
+  else
+    flow_.accelerate(g, t, springs_, true);
   for (unsigned i = 0; i < n; ++i) acceleration_[i] -= flow_.acceleration(i);
 }
 
@@ -102,6 +108,7 @@ void Xpbd::pull_together(Cloth& g, double h) {
     const Point u = x[j] - x[i];
     const double l = norm(u);
     if (l == 0 || wi + wj == 0 || spring.K == 0) continue;
+    if (one_way_ && one_way_->is_slack(e, l, spring)) continue;
     const double d = (l - spring.L) / (wi + wj + 1 / (spring.K * h * h));
     const Point way = (d / l) * u;
     x[i] += wi * way;

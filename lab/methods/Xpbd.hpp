@@ -4,6 +4,7 @@
  * towards its rest length. */
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,9 @@ namespace lab {
  * is conserved to round-off; angular momentum is not.
  *
  * The springs are the cloth's edges. So the force must consist of one
- * MassSpringForce and of others without stiffness; or it has no stiffness at
- * all, and then there are no springs. Any other force is rejected.
+ * MassSpringForce or OneWaySprings, whose slack springs project nothing, and of
+ * others without stiffness; or it has no stiffness at all, and then there are
+ * no springs. Any other force is rejected.
  * Source: M. Macklin, M. Mueller, N. Chentanez, "XPBD", MIG 2016,
  * doi:10.1145/2994258.2994272; M. Macklin et al., "Small steps in physics
  * simulation", SCA 2019, doi:10.1145/3309486.3340247. */
@@ -66,7 +68,8 @@ class Xpbd : public Method {
   long long rounds_ = 0;
   FlatFlow flow_;
   ForcePlan springs_ = MassSpringForce();  // recognised: may be temporary
-  std::vector<char> fixed_;                // by node id, as all that follows
+  std::shared_ptr<const OneWaySprings> one_way_;  // in their place; or null
+  std::vector<char> fixed_;  // by node id, as all that follows
   std::vector<Point> free_, acceleration_;
   std::vector<Point> pulls_;  // by edge id
 

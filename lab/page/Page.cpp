@@ -15,7 +15,7 @@
 #include "lab/methods/Methods.hpp"
 #include "lab/page/PageScenes.hpp"
 #include "lab/scenes/Json.hpp"
-#include "lab/scenes/Measure.hpp"
+#include "lab/stepping/Trial.hpp"
 
 namespace lab {
 
@@ -207,9 +207,8 @@ const char* page_readings(int sharp) {
   const Model& m = state().live->model();
   if (const Measure& what = m.measure; what.quantity < Measure::lost_energy &&
                                        what.quantity != Measure::positions)
-    all +=
-        ',' + members("measure", name_of(what), "unit", unit_of(what), "answer",
-                      list(answer(m, state().live->scene().cloth(), what)));
+    all += ',' + members("measure", name_of(what), "unit", unit_of(what),
+                         "answer", list(answer(state().live->scene(), what)));
   return say({'{' + all + '}'});
 }
 

@@ -49,16 +49,17 @@ inline Array<double> real(const py::object& given, const char* name) {
   return a;
 }
 
-/** Nodes of @a n that @a given names by their numbers, or as a mask of n.
- * Throws a TypeError or a ValueError. */
+/** Nodes, or @a what, of @a n that @a given names by their numbers, or as a
+ * mask of n. Throws a TypeError or a ValueError. */
 inline std::vector<unsigned> nodes_of(const py::object& given, const char* name,
-                                      std::size_t n) {
+                                      std::size_t n,
+                                      const std::string& what = "node") {
   const bool is_set = py::isinstance<py::set>(given);
   const auto a = py::array::ensure(is_set ? py::list(given) : given);
   const char kind = !a ? 'O' : a.size() == 0 ? 'i' : a.dtype().kind();
   if (!std::strchr("biu", kind) || a.ndim() != 1)
-    throw py::type_error(std::string(name) +
-                         " holds no nodes, expected their numbers, or a mask "
+    throw py::type_error(std::string(name) + " holds no " + what +
+                         "s, expected their numbers, or a mask "
                          "of shape (" +
                          std::to_string(n) + ",)");
   std::vector<unsigned> nodes;
@@ -70,7 +71,7 @@ inline std::vector<unsigned> nodes_of(const py::object& given, const char* name,
     const long long i = kind == 'b' ? k : at.data()[k];
     if (i < 0 || i >= (long long)(n))
       refuse(std::string(name) + '[' + std::to_string(k) + "] is " +
-             std::to_string(i) + ", expected a node, 0 to " +
+             std::to_string(i) + ", expected a " + what + ", 0 to " +
              std::to_string(n - 1));
     if (kind != 'b' || at.data()[k]) nodes.push_back(unsigned(i));
   }

@@ -53,6 +53,7 @@ class Rest:
         self.stable: Final[bool]
         self.growing: Final[list[int]]
         self.loose: Final[list[int]]
+        self.slack: Final[list[list[int]]]
         self.frequencies: Final[list[float]]
 
 class Advice:
@@ -84,7 +85,9 @@ class Net(Scene):
                  k: ArrayLike = 100.0, L: ArrayLike | None = None,
                  mass: ArrayLike | None = None, fixed: ArrayLike = (),
                  v: ArrayLike | None = None, drag: float = 0.0,
-                 gravity: ArrayLike = 9.81) -> None: ...
+                 gravity: ArrayLike = 9.81, cables: ArrayLike = (),
+                 struts: ArrayLike = (), load: ArrayLike | None = None
+                 ) -> None: ...
 
 def scene(file: str | PathLike[str]) -> Scene: ...
 def methods() -> list[Method]: ...

@@ -45,7 +45,8 @@ Simulation make_net(const py::object& x, const py::object& edges,
                     const py::object& k, const py::object& L,
                     const py::object& mass, const py::object& fixed,
                     const py::object& v, const py::object& drag,
-                    const py::object& gravity) {
+                    const py::object& gravity, const py::object& cables,
+                    const py::object& struts, const py::object& load) {
   Net net;
   net.points = points_of(x, "x");
   const auto n = net.points.size();
@@ -67,6 +68,17 @@ Simulation make_net(const py::object& x, const py::object& edges,
              ", " + std::to_string(j) +
              "), expected two different nodes, 0 to " + std::to_string(n - 1));
     net.springs.push_back({unsigned(i), unsigned(j), stiffness[s], length[s]});
+  }
+  for (unsigned s : nodes_of(cables, "cables", e, "spring"))
+    net.springs[s].acts = Acts::pulls;
+  for (unsigned s : nodes_of(struts, "struts", e, "spring"))
+    if (std::exchange(net.springs[s].acts, Acts::pushes) == Acts::pulls)
+      refuse("struts has spring " + std::to_string(s) +
+             ", which is a cable, expected one of both");
+  if (!load.is_none()) {
+    const std::vector<Point> force = points_of(load, "load", py::ssize_t(n));
+    for (unsigned i = 0; i < n; ++i)
+      if (force[i] != Point()) net.loads.push_back({i, force[i]});
   }
   join_ends(net);
   for (const std::string& note : net.notes)
@@ -221,7 +233,7 @@ void define_values(py::module_& module) {
       .def_readonly("residual", &AtRest::residual,
                     "What is left of all forces [N].")
       .def_readonly("load", &AtRest::load,
-                    "The weight, or else the largest force at first [N].")
+                    "Weight and loads, or else all forces at first [N].")
       .def_readonly("factors", &AtRest::factors, "Cholesky factors it took.")
       .def_property_readonly(
           "stable", &AtRest::stable,
@@ -231,6 +243,8 @@ void define_values(py::module_& module) {
       .def_property_readonly(
           "loose", &AtRest::loose_nodes,
           "Nodes that no energy holds, which may move freely.")
+      .def_readonly("slack", &AtRest::slack,
+                    "The ends of cables and struts that do not act.")
       .def_property_readonly("frequencies", &AtRest::frequencies,
                              "The lowest, at most ten [Hz], rising.")
       .def("__str__", &AtRest::text);
@@ -335,20 +349,25 @@ void define_simulations(py::module_& module) {
       "fixed: nodes that are held, or a mask of n. v: velocities [m/s], (n, "
       "3); None: at rest. "
       "drag: c of each node [kg/s], force -c v. gravity [m/s^2]: a number acts "
-      "down, along -z; or a vector.\n\n"
+      "down, along -z; or a vector. cables, struts: edges that only pull, only "
+      "push, by number or as a mask of e. load: forces on nodes [N], (n, "
+      "3).\n\n"
       "Raises ValueError \"ARRAY[INDEX] is ..., expected ...\".")
       .def(py::init([](const py::object& x, const py::object& edges,
                        const py::object& k, const py::object& L,
                        const py::object& mass, const py::object& fixed,
                        const py::object& v, const py::object& drag,
-                       const py::object& gravity) {
-             return FromArrays(
-                 make_net(x, edges, k, L, mass, fixed, v, drag, gravity));
+                       const py::object& gravity, const py::object& cables,
+                       const py::object& struts, const py::object& load) {
+             return FromArrays(make_net(x, edges, k, L, mass, fixed, v, drag,
+                                        gravity, cables, struts, load));
            }),
            py::arg("x"), py::arg("edges"), py::kw_only(), py::arg("k") = 100.,
            py::arg("L") = py::none(), py::arg("mass") = py::none(),
            py::arg("fixed") = py::tuple(), py::arg("v") = py::none(),
-           py::arg("drag") = 0., py::arg("gravity") = grav);
+           py::arg("drag") = 0., py::arg("gravity") = grav,
+           py::arg("cables") = py::tuple(), py::arg("struts") = py::tuple(),
+           py::arg("load") = py::none());
 }
 
 }  // namespace

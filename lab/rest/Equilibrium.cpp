@@ -228,6 +228,7 @@ Rest Equilibrium::find(int most) {
     if (fixed_[n.id()]) continue;
     const double m = n.value().mass;
     rest_.load += m * force_.gravity().size();
+    rest_.load += norm(force_.potential().load(n));
     pull = std::max(pull, norm(left_[n.id()]) / m);
   }
   if (rest_.load == 0) rest_.load = rest_.residual;

@@ -14,7 +14,7 @@ namespace lab {
 /** What Equilibrium::find() reached. */
 struct Rest {
   double residual = 0;  ///< [N]: the norm of what obstacles leave of all forces
-  double load = 0;      ///< [N]: the weight, or else the largest force at first
+  double load = 0;      ///< [N]: weight and loads, or else all forces at first
   double floor = 0;     ///< [N]: the round-off of the residual
   double shift = 0;     ///< [1/s^2] that the last matrix needed: see find()
   int factors = 0;      ///< Cholesky factors

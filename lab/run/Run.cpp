@@ -363,7 +363,7 @@ void Run::write_mesh() {
 void Run::add_row() {
   if (!csv_ || rows_.has_present()) return;
   const Cloth& g = scene_.cloth();
-  const Energies e = energies(g, scene_.model().gravity);
+  const Energies e = scene_.energy();
   const Point c = center_of_mass(g);
   std::string row;
   for (double a : {scene_.time(), e.kinetic, e.elastic, e.gravitational,
@@ -409,7 +409,7 @@ void Run::tell_interrupt() const {
 }
 
 void Run::print_summary() const {
-  const Energies e = energies(scene_.cloth(), scene_.model().gravity);
+  const Energies e = scene_.energy();
   std::ostringstream out;
   out << std::setprecision(3) << scene_.model().name << ": " << scene_.steps()
       << " steps to t = " << scene_.time() << " s in " << seconds_

@@ -68,11 +68,18 @@ std::vector<std::string> what_acts(const Model& m, const Cloth& g,
   if (g.num_edges() > 0)
     add("springs, K " + range(low, high) + " N/m",
         times + count_of(g.num_edges(), "spring"));
+  for (const Acts acts : {Acts::pulls, Acts::pushes})
+    if (const auto n = std::ranges::count(mesh.springs, acts, &Spring::acts))
+      add(acts == Acts::pulls ? "cables, which only pull"
+                              : "struts, which only push",
+          std::to_string(n) + " of these");
   if (m.gravity != 0)
     add("gravity " + (m.gravity.is_down()
                           ? short_text(m.gravity.size()) + " m/s^2 down"
                           : to_words(m.gravity) + " m/s^2"),
         times + each_node);
+  if (!mesh.loads.empty())
+    add("loads of the net", times + count_of(mesh.loads.size(), "load"));
   if (const auto drag = m.material.drag; drag && *drag > 0)
     add("drag " + short_text(*drag) + " kg/(s m^2)", times + each_node);
   else if (!drag && m.damping > 0)

@@ -12,11 +12,12 @@
 #include "CME212/Util.hpp"
 #include "lab/fast/Drag.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/fast/LoadForce.hpp"
+#include "lab/fast/OneWaySprings.hpp"
 #include "lab/fast/OrderedCloth.hpp"
 #include "lab/scenes/Contact.hpp"
 #include "lab/scenes/Memory.hpp"
 #include "lab/scenes/SelfCollision.hpp"
-#include "lab/scenes/WindForce.hpp"
 #include "lab/scenes/Words.hpp"
 
 namespace lab {
@@ -140,13 +141,15 @@ void set_kinds(Cloth& g, const Net& net, const Edges& edges) {
     });
 }
 
-/** Add the springs that @a net lists to those of its faces. */
+/** Add the springs that @a net lists to those of its faces.
+ * Throws SceneError: two between the same nodes that are no one spring */
 void add_listed(Cloth& g, const Net& net, const Model& m) {
-  std::vector<char> listed(g.num_edges());  // by index of the edge
-  for (auto [i, j, K, L] : net.springs) {
+  std::vector<const Spring*> listed(g.num_edges());  // by index of the edge
+  for (const Spring& s : net.springs) {
+    auto [i, j, K, L, acts] = s;
     Edge e = g.add_edge(g.node(i), g.node(j));
     const bool is_new = e.index() == listed.size();
-    if (is_new) listed.push_back(0);
+    if (is_new) listed.push_back(nullptr);
     if (L < 0) L = norm(net.points[i] - net.points[j]);
     if (K < 0 && m.material.modulus && is_new)
       throw SceneError("modulus", "gives no K to the spring of nodes " +
@@ -155,11 +158,16 @@ void add_listed(Cloth& g, const Net& net, const Model& m) {
                                       ", which lies in no face");
     if (K < 0) K = m.material.modulus ? e.value().K : m.stiffness;
     EdgeData& all = e.value();
-    const double sum = all.K + K;
-    if (!std::exchange(listed[e.index()], 1) || sum == 0)
+    if (const Spring* other = std::exchange(listed[e.index()], &s); !other)
       all = {K, L};
-    else  // the sum of both forces
-      all = {sum, (all.K * all.L + K * L) / sum};
+    else if (all.L == L && other->acts == acts)
+      all.K += K;
+    else
+      throw SceneError(
+          "net", "joins nodes " + std::to_string(i) + " and " +
+                     std::to_string(j) +
+                     " by two springs that differ in more than K, expected "
+                     "one; put a node of small mass into one of them");
   }
 }
 
@@ -351,6 +359,20 @@ Net mesh_left(const Cloth& g, const BuiltMesh& built) {
   return left;
 }
 
+/** How the springs of @a g act, by edge id, as @a net lists them; empty if all
+ * pull and push.  @param id of node i, as id(i)   O(springs) */
+template <typename Id>
+std::vector<Acts> ways_of(const Net& net, const Cloth& g, Id id) {
+  std::vector<Acts> all;
+  for (const Spring& s : net.springs) {
+    if (s.acts == Acts::both) continue;
+    all.resize(arrays(g).edge_slots());
+    for (const auto& [node, edge] : arrays(g).neighbors(id(s.i)))
+      if (node == id(s.j)) all[edge] = s.acts;
+  }
+  return all;
+}
+
 Net net_left(const Cloth& g, const BuiltMesh& built,
              const std::vector<HeldNodes>& held) {
   Net left = mesh_left(g, built);
@@ -361,9 +383,14 @@ Net net_left(const Cloth& g, const BuiltMesh& built,
       index[id] = unsigned(left.masses.size());
       left.masses.push_back(arrays(g).node_with_id(id).value().mass);
     }
+  const OneWaySprings one_way(
+      ways_of(built.mesh, g, [&](unsigned i) { return built.ids[i]; }));
   for (Edge e : g.edges())
     left.springs.push_back({index[e.node1().id()], index[e.node2().id()],
-                            e.value().K, e.value().L});
+                            e.value().K, e.value().L, one_way.acts(e.id())});
+  for (const auto& [i, force] : built.mesh.loads)
+    if (arrays(g).node_in_use(built.ids[i]))
+      left.loads.push_back({index[built.ids[i]], force});
   for (const HeldNodes& h : held)
     for (const auto& node : h.nodes)
       if (arrays(g).node_in_use(node.id)) left.held.push_back(index[node.id]);
@@ -376,7 +403,11 @@ CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
   if (a.z != 0) forces.push_back(std::make_shared<GravityForce>(-a.z));
   if (a.x != 0 || a.y != 0)
     forces.push_back(std::make_shared<SidewaysForce>(a.x, a.y));
-  forces.push_back(std::make_shared<MassSpringForce>());
+  const auto id = [&g](unsigned i) { return g.node(i).id(); };
+  if (auto ways = ways_of(mesh, g, id); !ways.empty())
+    forces.push_back(std::make_shared<OneWaySprings>(std::move(ways)));
+  else
+    forces.push_back(std::make_shared<MassSpringForce>());
   std::vector<double> c(arrays(g).node_slots(), m.damping);
   if (const auto drag = m.material.drag; drag && *drag > 0) {
     const std::vector<double> share = areas(mesh);
@@ -388,6 +419,15 @@ CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
   }
   if (m.wind)
     forces.push_back(std::make_shared<WindForce>(c, m.wind->velocity));
+  if (!mesh.loads.empty()) {
+    if (!m.tears.empty())
+      throw SceneError("tear",
+                       "removes nodes, and what became of the loads of the net "
+                       "on them is not known, expected one of both");
+    std::vector<Point> load(arrays(g).node_slots());
+    for (const auto& [i, force] : mesh.loads) load[id(i)] += force;
+    forces.push_back(std::make_shared<LoadForce>(std::move(load)));
+  }
   return CombinedForces(std::move(forces));
 }
 

@@ -98,7 +98,8 @@ std::vector<Field> fields_of(Model& m) {
        "drape-height, point u U v V [sheet N] [x|y|z], distance, positions "
        "[m], "
        "energy, kinetic-energy, elastic-energy, lost-energy [J], max-stretch, "
-       "stretch-at, pin-force [x X] [y Y] [z Z], contact-force [N], tear-time "
+       "stretch-at, pin-force [x X] [y Y] [z Z], contact-force, tension I J, "
+       "max-tension [N], tear-time "
        "[s], torn-edges, torn-nodes; or over time: max, min, mean or period "
        "NAME, first or last NAME above X: see lab/scenes/README.md"},
       {"tolerance",

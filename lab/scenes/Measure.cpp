@@ -11,6 +11,7 @@
 #include "lab/fast/Energy.hpp"
 #include "lab/fast/ForcePlan.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/fast/OneWaySprings.hpp"
 
 namespace lab {
 
@@ -187,20 +188,67 @@ Answer stretch_at(const Measured& now, const Measure& what) {
   return {most};
 }
 
+/** What stores the energy of @a now. */
+Potential potential(const Measured& now) {
+  return now.force ? ForcePlan(*now.force).potential()
+                   : Potential(now.model.gravity);
+}
+
+double torn_edges(const Cloth& g) {
+  return double(arrays(g).edge_slots() - g.num_edges());
+}
+double torn_nodes(const Cloth& g) {
+  return double(arrays(g).node_slots() - g.num_nodes());
+}
+
+/** The force [N] of @a e by K and L on its node1(). */
+Point spring_force_of(const Measured& now, Edge e) {
+  const Point u = e.node2().position() - e.node1().position();
+  for (const auto& part : now.force->parts)
+    if (auto one_way = dynamic_cast<const OneWaySprings*>(part.get()))
+      return one_way->pull(e.id(), u, e.value());
+  return spring_force(u, e.value());
+}
+
+/** The same, as it acted. */
+Point pull_of(const Measured& now, Edge e) {
+  if (e.id() >= now.pulls.size()) return spring_force_of(now, e);
+  const bool first = e.node1().id() == arrays(now.cloth).edge_ends()[e.id()][0];
+  return (first ? 1 : -1) * now.pulls[e.id()];
+}
+
 /** The force that acted on @a n [N].  O(its springs) */
 Point force_on(const Measured& now, Node n) {
   Point f = (*now.force)(n, now.time);
   for (Edge e : n.edges()) {
     if (e.id() >= now.pulls.size()) continue;
-    const bool first =
-        e.node1().id() == arrays(now.cloth).edge_ends()[e.id()][0];
-    const Point u = e.node2().position() - e.node1().position();
-    const auto& [K, L] = e.value();
-    const double l = norm(u);
-    if (l > 0) f -= (K * (l - L) / l) * u;
-    f += (first ? 1 : -1) * now.pulls[e.id()];
+    f -= spring_force_of(now, e);
+    f += pull_of(now, e);
   }
   return f;
+}
+
+/** The tension of @a e [N], below 0 if it pushes. */
+double tension_of(const Measured& now, Edge e) {
+  const Point u = e.node2().position() - e.node1().position();
+  return u == Point() ? 0 : dot(pull_of(now, e), u) / norm(u);
+}
+
+Answer tension(const Measured& now, const Measure& what) {
+  const auto [i, j] = what.between;
+  const Cloth& g = now.cloth;
+  if (std::max(i, j) < g.num_nodes())
+    for (Edge e : g.node(i).edges())
+      if (e.node2() == g.node(j)) return {tension_of(now, e)};
+  if (torn_edges(g) > 0) return {0};
+  throw SceneError("measure",
+                   "is " + name_of(what) + ", which no spring joins");
+}
+
+Answer max_tension(const Measured& now, const Measure&) {
+  double most = 0;
+  for (Edge e : now.cloth.edges()) most = std::max(most, tension_of(now, e));
+  return {most};
 }
 
 /** The sum of all forces on the held nodes that @a what names [N], each node
@@ -303,13 +351,6 @@ Answer contact_force(const Measured& now, const Measure&) {
   return {norm(sum)};
 }
 
-double torn_edges(const Cloth& g) {
-  return double(arrays(g).edge_slots() - g.num_edges());
-}
-double torn_nodes(const Cloth& g) {
-  return double(arrays(g).node_slots() - g.num_nodes());
-}
-
 /** The one number that @a of finds of the cloth alone. */
 template <double (*of)(const Cloth&)>
 Answer of_cloth(const Measured& now, const Measure&) {
@@ -329,7 +370,7 @@ Point position_of(const Measured& now, const SheetPlace& p) {
 
 }  // namespace
 
-const std::array<Quantity, 16> quantities = {{
+const std::array<Quantity, 18> quantities = {{
     {"com", "m",
      [](const Measured& now, const Measure& what) {
        return components(center_of_mass(now.cloth), what);
@@ -337,18 +378,24 @@ const std::array<Quantity, 16> quantities = {{
     {"energy", "J",
      [](const Measured& now, const Measure&) {
        const Cloth& g = now.cloth;
-       return Answer{kinetic_energy(g) + elastic_energy(g) +
-                     gravitational_energy(g, now.model.gravity)};
+       const Potential stored = potential(now);
+       return Answer{kinetic_energy(g) + stored.elastic_energy(g) +
+                     stored.gravitational_energy(g)};
      }},
     {"positions", "m", positions},
     {"max-stretch", "", stretch},
     {"drape-height", "m", lowest_height},
     {"kinetic-energy", "J", of_cloth<kinetic_energy>},
-    {"elastic-energy", "J", of_cloth<elastic_energy>},
+    {"elastic-energy", "J",
+     [](const Measured& now, const Measure&) {
+       return Answer{potential(now).elastic_energy(now.cloth)};
+     }},
     {"lost-energy", "J",
      [](const Measured& now, const Measure&) { return Answer{now.lost}; }},
     {"pin-force", "N", pin_force},
     {"contact-force", "N", contact_force},
+    {"tension", "N", tension},
+    {"max-tension", "N", max_tension},
     {"torn-edges", "", of_cloth<torn_edges>},
     {"torn-nodes", "", of_cloth<torn_nodes>},
     {"tear-time", "s", tear_time},
@@ -405,10 +452,15 @@ std::string lacks(const Model& m, const Measure& what) {
                             : what.place.sheet;
   if (what.has_place() && double(m.sheets.size()) < sheets)
     return "names a sheet that the scene does not have";
-  if (tears && (what.has_place() || what.quantity == Measure::positions))
+  if (tears && (what.has_place() || what.quantity == Measure::positions ||
+                what.quantity == Measure::tension))
     return "cannot be compared in a cloth that tears";
   if ((what.quantity == Measure::tear_time || what.counts()) && !tears)
     return "needs --tear or --tear-strain";
+  if ((what.quantity == Measure::tension ||
+       what.quantity == Measure::max_tension) &&
+      !m.sheets.empty())
+    return "depends on the grid of a sheet, whose springs stand for cloth";
   if (what.quantity == Measure::contact_force && m.planes.empty() &&
       m.spheres.empty())
     return "needs --plane or --sphere";

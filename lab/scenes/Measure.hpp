@@ -41,7 +41,7 @@ struct Quantity {
   Answer (*read)(const Measured& now, const Measure& what);
 };
 /** In the order of Measure::Quantity. */
-extern const std::array<Quantity, 16> quantities;
+extern const std::array<Quantity, 18> quantities;
 
 /** As --measure takes it: "com", "max com z", "point u 0.5 v 1",
  * "first com z below -1". */

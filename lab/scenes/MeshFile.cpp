@@ -112,7 +112,8 @@ void join_ends(Net& net) {
     if (s.i < s.j) forward.push_back(s);
   std::ranges::sort(forward);
   const auto n = std::erase_if(net.springs, [&](const Spring& s) {
-    return std::ranges::binary_search(forward, Spring{s.j, s.i, s.K, s.L});
+    return std::ranges::binary_search(forward,
+                                      Spring{s.j, s.i, s.K, s.L, s.acts});
   });
   note_once(net, n, "spring", "from both ends");
 }

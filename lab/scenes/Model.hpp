@@ -166,6 +166,8 @@ struct Measure {
     lost_energy,
     pin_force,
     contact_force,
+    tension,
+    max_tension,
     torn_edges,
     torn_nodes,
     tear_time,
@@ -180,6 +182,7 @@ struct Measure {
   Over over = at_end;
   std::array<bool, 3> only = {};  ///< of com, point: one component, x, y or z
   Pin pin = {};  ///< of pin-force: where its nodes start; empty: all pins
+  std::array<unsigned, 2> between = {0, 1};  ///< of tension: nodes, by index
   SheetPlace place = {}, to = {.u = 1, .v = 1};  ///< to: of distance
   double from = 0;                            ///< of mean: its first time [s]
   std::optional<double> above, below;         ///< of first and last: the level

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "CME212/Mesh.hpp"
+#include "lab/fast/Energy.hpp"
 
 namespace lab {
 
@@ -30,7 +31,15 @@ struct Spring {
   unsigned i, j;
   double K = -1;  ///< [N/m]; negative: as the scene gives it to its springs
   double L = -1;  ///< rest length [m]; negative: the distance of i and j
+  Acts acts = Acts::both;
   auto operator<=>(const Spring&) const = default;
+};
+
+/** A constant force on a node. */
+struct Load {
+  unsigned node;
+  Point force;  ///< [N]
+  bool operator==(const Load&) const = default;
 };
 
 /** Nodes, and what joins them. */
@@ -46,6 +55,7 @@ struct Net {
   std::vector<Spring> springs = {};
   std::vector<double> masses = {};  ///< [kg]; empty: 1 kg in equal parts
   std::vector<unsigned> held = {};  ///< nodes held where they are
+  std::vector<Load> loads = {};     ///< those of one node add up
   /** The faces have no springs: they are surface alone, for area and view. */
   bool bare_faces = false;
   /** Changes that a reader made to the mesh of a file, a sentence each. */

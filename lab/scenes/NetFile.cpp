@@ -27,8 +27,10 @@ void parse_net_lines(std::string_view text, const std::string& file,
        "or 'held'"},
       {"spring",
        "'spring i j', nodes of lines above, then K [N/m], then the "
-       "rest length [m]"},
+       "rest length [m], each also behind its name, 'K' or 'L', then 'cable' "
+       "or 'strut'"},
       {"face", "'face i j k', its nodes around, of lines above"},
+      {"load", "'load i x y z', a node of a line above and a force [N]"},
       {"bare-faces", "'bare-faces' alone"}};
   const Form* form = nullptr;
   Net& net = b.net;
@@ -57,14 +59,21 @@ void parse_net_lines(std::string_view text, const std::string& file,
         break;
       }
       case 1: {
-        if (w.size() < 3 || w.size() > 5)
+        if (w.size() < 3)
           fail(CME212::count_of(w.size() - 1, "value") + " in the line");
-        const auto value = [&](std::size_t k) {
-          const double a = k < w.size() ? number(w[k]) : -1;
-          if (k < w.size() && a < 0) fail(quoted(w[k]) + " is below 0");
-          return a;
+        b.spring(whole(w[1]), whole(w[2]));
+        Spring& s = net.springs.back();
+        const auto set = [&](double& a, std::string_view word) {
+          if (a >= 0) fail(quoted(word) + " in the line");
+          if ((a = number(word)) < 0) fail(quoted(word) + " is below 0");
         };
-        b.spring(whole(w[1]), whole(w[2]), value(3), value(4));
+        for (std::size_t k = 3; k < w.size(); ++k)
+          if (w[k] == "cable" || w[k] == "strut")
+            s.acts = w[k] == "cable" ? Acts::pulls : Acts::pushes;
+          else if ((w[k] == "K" || w[k] == "L") && k + 1 < w.size())
+            set(w[k] == "K" ? s.K : s.L, w[k + 1]), ++k;
+          else
+            set(s.K < 0 ? s.K : s.L, w[k]);
         break;
       }
       case 2: {
@@ -73,6 +82,11 @@ void parse_net_lines(std::string_view text, const std::string& file,
         b.face(nodes);
         break;
       }
+      case 3:
+        if (w.size() != 5)
+          fail(CME212::count_of(w.size() - 1, "value") + " in the line");
+        net.loads.push_back({b.index(whole(w[1])), point(w, 2)});
+        break;
       default:
         if (w.size() > 1) fail(quoted(w[1]) + " in the line");
         net.bare_faces = true;
@@ -81,7 +95,7 @@ void parse_net_lines(std::string_view text, const std::string& file,
   each_line(text, file, use, [&]() -> std::string {
     return form != std::end(forms)
                ? form->expected
-               : "a line of node, spring, face or bare-faces";
+               : "a line of node, spring, face, load or bare-faces";
   });
   if (!net.velocities.empty()) net.velocities.resize(net.points.size());
   if (!net.masses.empty()) net.masses.resize(net.points.size());
@@ -282,7 +296,7 @@ Net parse_net(std::string_view text, const std::string& file) {
 }
 
 void write_net(std::ostream& out, const Net& net) {
-  const auto write = [&out](const char* name, const Point& p) {
+  const auto write = [&out](const std::string& name, const Point& p) {
     out << name << ' ' << CME212::to_text(p.x) << ' ' << CME212::to_text(p.y)
         << ' ' << CME212::to_text(p.z);
   };
@@ -298,7 +312,9 @@ void write_net(std::ostream& out, const Net& net) {
   for (const Spring& s : net.springs) {
     out << "spring " << s.i << ' ' << s.j;
     if (s.K >= 0) out << ' ' << CME212::to_text(s.K);
-    if (s.K >= 0 && s.L >= 0) out << ' ' << CME212::to_text(s.L);
+    if (s.L >= 0) out << (s.K < 0 ? " L " : " ") << CME212::to_text(s.L);
+    if (s.acts != Acts::both)
+      out << (s.acts == Acts::pulls ? " cable" : " strut");
     out << '\n';
   }
   for (const Quad& q : net.quads) {
@@ -306,6 +322,8 @@ void write_net(std::ostream& out, const Net& net) {
     if (!is_triangle(q)) out << ' ' << q[1];
     out << '\n';
   }
+  for (const Load& a : net.loads)
+    write("load " + std::to_string(a.node), a.force), out << '\n';
   if (net.bare_faces) out << "bare-faces\n";
 }
 

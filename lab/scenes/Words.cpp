@@ -110,6 +110,8 @@ Words words_of(Measure& m) {
   };
   if (m.quantity == Measure::pin_force)
     take({{"x", &m.pin.x}, {"y", &m.pin.y}, {"z", &m.pin.z}});
+  if (m.quantity == Measure::tension)
+    take({{"between", &m.between, not_negative, word}});
   if (m.has_place()) place(m.place, "u", "v", "sheet");
   if (m.quantity == Measure::distance) place(m.to, "to-u", "to-v", "to-sheet");
   if (m.quantity == Measure::point || m.quantity == Measure::com) {
@@ -159,8 +161,12 @@ void each_number(const Word& w, Use use) {
 
 /** The condition that the number @a a of a word violates; or null. */
 const char* unmet(const Word& w, double a) {
-  if (std::holds_alternative<std::array<unsigned, 2>*>(w.member))
-    return a >= 1 && a <= 10000 && a == std::floor(a) ? nullptr : "1 to 10000";
+  if (std::holds_alternative<std::array<unsigned, 2>*>(w.member)) {
+    const bool index = w.range == not_negative;
+    if (a == std::floor(a) && a >= !index && a <= (index ? 4e9 : 10000))
+      return nullptr;
+    return index ? "the index of a node" : "1 to 10000";
+  }
   if (w.range == positive && !(a > 0)) return "more than 0";
   return w.range == not_negative && !(a >= 0) ? "at least 0" : nullptr;
 }

@@ -8,20 +8,21 @@
 
 namespace lab {
 
-Energies energies(const Cloth& g, const Gravity& gravity,
+Energies energies(const Cloth& g, const Potential& potential,
                   const EnergyFlow& flow) {
-  Energies e = {kinetic_energy(g), elastic_energy(g),
-                gravitational_energy(g, gravity)};
+  Energies e = {kinetic_energy(g), potential.elastic_energy(g),
+                potential.gravitational_energy(g)};
   Point carrier = flow.carried;
   if (flow.loose) {
     Point momentum;
-    double mass = 0;
+    double mass = 0, power = 0;  // of the loads [W]
     for (Node n : g.nodes()) {
+      power += dot(potential.load(n), n.value().vel);
       momentum += n.value().mass * n.value().vel;
       mass += n.value().mass;
     }
     if (mass > 0) carrier = momentum / mass;
-    e.fall_power = std::abs(dot(gravity.a, momentum));
+    e.fall_power = std::abs(dot(potential.gravity.a, momentum) + power);
   }
   e.relative = e.kinetic;
   if (carrier == Point()) return e;

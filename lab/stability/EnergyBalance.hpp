@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "lab/fast/ConstraintPlan.hpp"
-#include "lab/fast/Gravity.hpp"
+#include "lab/fast/ForcePlan.hpp"
 
 namespace lab {
 
 /** The energy of a cloth [J]. */
 struct Energies {
   double kinetic = 0, elastic = 0;
-  double gravitational = 0;  ///< 0 at the origin
+  double gravitational = 0;  ///< of loads, too; 0 at the origin
   double relative = 0;       ///< kinetic, relative to the carrier: EnergyFlow
-  double fall_power = 0;     ///< |power of gravity| on a loose cloth [W]
+  double fall_power = 0;     ///< |power of gravity and loads|, if loose [W]
   double total() const { return kinetic + elastic + gravitational; }
   /** Equal in all frames of reference. Gains are compared with it. */
   double internal() const { return relative + elastic; }
@@ -43,7 +43,7 @@ struct EnergyFlow {
 
 /** The energies of @a g.  O(N + springs)
  * @param flow only carried and loose are used */
-Energies energies(const Cloth& g, const Gravity& gravity,
+Energies energies(const Cloth& g, const Potential& potential,
                   const EnergyFlow& flow = {});
 
 /** The gain of energy that is tolerated by default, as a share of the largest

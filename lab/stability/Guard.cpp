@@ -9,18 +9,20 @@
 
 namespace lab {
 
-DivergenceGuard::DivergenceGuard(const Cloth& g, const Gravity& gravity,
+DivergenceGuard::DivergenceGuard(const Cloth& g, const Potential& potential,
                                  double dt, const EnergyFlow& flow)
-    : gravity_(gravity), dt_(dt) {
-  const Energies e = energies(g, gravity, flow);
+    : potential_(potential), dt_(dt) {
+  const Energies e = energies(g, potential, flow);
   start_ = balance(e, flow);
   drag_ = flow.drag;
   available_ = e.internal();
-  const double fall = gravity.size() * dt;  // [m/s]
+  const double fall = potential.gravity.size() * dt;  // [m/s]
   constexpr double strain = 1e-6;
   for (Edge e : g.edges())
     round_off_ += spring_energy((1 + strain) * e.value().L, e.value());
   floor_ = total_mass(g) * fall * fall + round_off_;
+  for (Node n : g.nodes())
+    floor_ += dt * dt * normSq(potential.load(n)) / n.value().mass;
   keep(g);
 }
 

@@ -33,8 +33,9 @@ class NodeStates {
 
 /** A cheap alarm: checks the energy of a run and keeps the last good state.
  *
- * The energy of a cloth is the initial one, the work of gravity, and the work
- * of moving pins and obstacles. So a state is good if its energy is finite, and
+ * The energy of a cloth is the initial one, the work of gravity and of loads,
+ * and that of moving pins and obstacles. So a state is good if its energy is
+ * finite, and
  *   internal <= margin (available + floor)
  * internal: elastic energy, and kinetic energy relative to the held nodes, or
  *   to the center of mass of a loose cloth: Energies::internal()
@@ -54,15 +55,15 @@ class DivergenceGuard {
   /** @param g The cloth at the start
    * @param dt the longest step of the run [s]
    * @param flow until now; accept() gets later values of the same sums */
-  DivergenceGuard(const Cloth& g, const Gravity& gravity, double dt,
+  DivergenceGuard(const Cloth& g, const Potential& potential, double dt,
                   const EnergyFlow& flow = {});
 
   /** True if the state of @a g is good; then it is kept.  O(N + springs)
    * @param flow as EnergyBalance::flow() */
   bool accept(const Cloth& g, const EnergyFlow& flow = {}) {
-    return accept(g, energies(g, gravity_, flow), flow);
+    return accept(g, energies(g, potential_, flow), flow);
   }
-  /** The same if @a e = energies(g, gravity, flow) is known. */
+  /** The same if @a e = energies(g, potential, flow) is known. */
   bool accept(const Cloth& g, const Energies& e, const EnergyFlow& flow);
   /** Keep the state of @a g, good or not.  O(N) */
   void keep(const Cloth& g) { kept_.keep(g); }
@@ -88,7 +89,7 @@ class DivergenceGuard {
   }
 
  private:
-  Gravity gravity_;
+  Potential potential_;
   double dt_;         // [s]
   double start_ = 0;  // the balance at the start [J]
   double drag_ = 0;   // flow.drag then [J]

@@ -27,7 +27,7 @@ void find(const Cloth& g, const ForcePlan& force, std::vector<S>& springs) {
   auto use = [&](unsigned i, unsigned j, const Stiffness& B) {
     springs.push_back(S{i, j, B});
   };
-  if (force.add_stiffness(g, use)) return;
+  if (force.add_stiffness(g, use)) return force.add_slack(g, use);
   springs.clear();
   ForcePlan(MassSpringForce()).add_stiffness(g, use);
 }

@@ -6,6 +6,7 @@
 
 #include "CME212/Util.hpp"
 #include "lab/fast/GraphArrays.hpp"
+#include "lab/fast/OneWaySprings.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Words.hpp"
 
@@ -67,6 +68,10 @@ RestReport::RestReport(Scene& scene) : Rest(*scene.rest()) {
         {k < m.pins.size() ? "pin " + to_words(m.pins[k]) : "held by the net",
          sum});
   }
+  if (const auto one_way = ForcePlan(scene.force()).potential().one_way)
+    for (Edge e : g.edges())
+      if (one_way->is_slack(e.id(), e.length(), e.value()))
+        slack.push_back({e.node1().index(), e.node2().index()});
   for (Node n : g.nodes()) {
     if (n.id() >= number_.size()) number_.resize(n.id() + 1);
     number_[n.id()] = n.index();
@@ -127,6 +132,10 @@ std::string RestReport::text() const {
   for (const auto& [name, force] : pins)
     text += name + ": " + short_text(norm(force)) + " N, " +
             lab::short_text(force) + '\n';
+  for (const auto& ends : slack)
+    text += (&ends == slack.data() ? "slack: that of " : ", of ") +
+            in_words({ends[0], ends[1]});
+  if (!slack.empty()) text += '\n';
   const std::vector<double> all = frequencies();
   if (!all.empty()) text += "lowest frequencies [Hz]:";
   for (double f : all) text += ' ' + short_text(f);

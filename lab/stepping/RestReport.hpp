@@ -1,6 +1,7 @@
 #pragma once
 /** @file RestReport.hpp
  * What ./cloth --rest says of a scene that was put to rest. */
+#include <array>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,6 +21,8 @@ struct RestReport : Rest {
   std::vector<Mode> modes;
   std::size_t growing = 0, loose = 0;               ///< number of such modes
   std::vector<std::pair<std::string, Point>> pins;  ///< what each holds [N]
+  /** The ends of the cables and struts that do not act, by index, as listed. */
+  std::vector<std::array<unsigned, 2>> slack;
 
   /** @pre scene.rest(), no node was removed
    * Throws Interrupted.  Complexity: Equilibrium::modes(10) */

@@ -76,7 +76,8 @@ System& Scene::build() {
 }
 
 void Scene::take_forces(CombinedForces acting) {
-  built_.acting = std::move(acting), built_.gravity = model_.gravity;
+  built_.acting = std::move(acting);
+  built_.potential = ForcePlan(built_.acting).potential();
   built_.wind = model_.wind ? model_.wind->velocity : Point();
 }
 

@@ -32,7 +32,7 @@ void Stepper::restart(double t) {
   make_method();
   plan();
   evaluations_ = 0, work_ = {};
-  start_energy_ = energies(system_.cloth, system_.gravity).total();
+  start_energy_ = energies(system_.cloth, system_.potential).total();
   if (!step_.fixed() && std::isfinite(start_energy_))
     clock_.set_dt(limits_.chosen(entry_, step_.rule));
   EnergyFlow flow;
@@ -50,7 +50,7 @@ double Stepper::remove_overlaps() {
   } catch (const StepError&) {
     before.restore(system_.cloth);
   }
-  return energies(system_.cloth, system_.gravity).total() - start_energy_;
+  return energies(system_.cloth, system_.potential).total() - start_energy_;
 }
 
 void Stepper::make_method() {
@@ -65,10 +65,10 @@ void Stepper::start(const EnergyFlow& flow) {
   plan();
   failure_.reset();
   balance_.emplace(system_.cloth, time(), system_.acting, constraint_,
-                   system_.gravity);
+                   system_.potential.gravity);
   go_on(clock_, flow);
   hand_changed();
-  guard_.emplace(system_.cloth, system_.gravity, clock_.dt, this->flow());
+  guard_.emplace(system_.cloth, system_.potential, clock_.dt, this->flow());
   if (!is_finite())
     failure_ = {Failure::Kind::start, WorstPlace(system_.cloth),
                 std::string(entry_.info.name), time(), dt()};
@@ -392,7 +392,10 @@ void Stepper::keep_checked() {
   version_ = arrays(system_.cloth).version();
   const double thin = constraint_.thinnest();
   if (!std::isfinite(thin)) return;
-  const double gain = system_.gravity.size() * guard_interval * clock_.dt;
+  double a = system_.potential.gravity.size();
+  for (Node n : system_.cloth.nodes())
+    a = std::max(a, norm(system_.potential.load(n)) / n.value().mass);
+  const double gain = a * guard_interval * clock_.dt;
   system_.watched->watch(
       system_.cloth, (max_speed(system_.cloth) + gain) * clock_.dt > thin / 8);
 }

@@ -43,7 +43,7 @@ struct StepClock {
  * into the cloth. */
 struct System {
   Cloth cloth;
-  Gravity gravity;
+  Potential potential;
   Point wind = Point();                           ///< [m/s]
   CombinedForces acting{CombinedForces::List()};  ///< without the hand
   std::optional<HandForce> hand;
@@ -130,7 +130,7 @@ class Stepper {
   /** nullopt if the step is fixed. */
   const std::optional<StepControl>& control() const { return control_; }
   Energies energy() const {
-    return energies(system_.cloth, system_.gravity, flow());
+    return energies(system_.cloth, system_.potential, flow());
   }
   bool is_finite() const;
   /** The energy that entered and left the cloth since the start. */

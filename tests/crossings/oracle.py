@@ -95,6 +95,9 @@ class Net:
                   np.full(self.n, s.get("damping", 0.)))
         self.wind = np.array(s.get("wind", {}).get("velocity", (0, 0, 0)))
         self.g = gravity(s.get("gravity", G))
+        self.load = np.zeros((self.n, 3))
+        for k, *force in mesh.get("loads", []):
+            self.load[k] += force
         self.springs(listed)
         for r in s.get("region", []):
             low, high = np.sort([r["from"], r["to"]], axis=0)
@@ -136,20 +139,22 @@ class Net:
             K = (s["modulus"] * strip / L**2 if "modulus" in s else
                  s.get("stiffness", 100.))
             springs[i, j] = (owned.get((i, j), K), L, (i, j) not in owned
-                             and "modulus" not in s)
-        for i, j, own, L in listed:
+                             and "modulus" not in s, 0)
+        for i, j, own, L, *way in listed:
             springs[min(i, j), max(i, j)] = (
                 s.get("stiffness", 100.) if own is None else own,
-                norm(self.x[i] - self.x[j]) if L is None else L, own is None)
+                norm(self.x[i] - self.x[j]) if L is None else L, own is None,
+                ("cable" in way) - ("strut" in way))
         self.i, self.j = np.array(list(springs), int).reshape(-1, 2).T
-        self.K, self.L, free = np.array(list(springs.values())).reshape(-1, 3).T
+        self.K, self.L, free, self.way = np.array(
+            list(springs.values())).reshape(-1, 4).T
         self.L = self.L * s.get("rest-length", 1)
         self.free, self.factor = free > 0, np.ones(len(free))
         self.keep(self.L == self.L)
 
     def keep(self, springs: Array) -> None:
         """Keep these springs alone. C: their incidence with the nodes."""
-        for name in ("i", "j", "K", "L", "free", "factor"):
+        for name in ("i", "j", "K", "L", "free", "factor", "way"):
             setattr(self, name, getattr(self, name)[springs])
         node = np.arange(self.n)[:, None]
         self.C = (node == self.i) * 1. - (node == self.j)
@@ -173,16 +178,22 @@ class Net:
         """Forces [N]; of several states, if x has an axis before the nodes."""
         u = x[..., self.j, :] - x[..., self.i, :]
         l = np.maximum(norm(u, axis=-1), 1e-300)
-        f = self.C @ ((self.K * (1 - self.L / l))[..., None] * u)
+        f = self.C @ ((self.tension(l) / l)[..., None] * u)
         f -= self.c[:, None] * (v - self.wind)
-        f += self.m[:, None] * self.g
+        f += self.m[:, None] * self.g + self.load
         return f
+
+    def tension(self, l: Array) -> Array:
+        """Of springs of these lengths [N]; a cable does not push, a strut does
+        not pull."""
+        return np.where(self.way * (l - self.L) < 0, 0, self.K * (l - self.L))
 
     def energies(self, x: Array, v: Array) -> dict[str, float]:
         l = norm(x[self.j] - x[self.i], axis=1)
         return {"kinetic": np.sum(self.m * np.sum(v * v, 1)) / 2,
-                "elastic": np.sum(self.K * (l - self.L)**2) / 2,
-                "gravitational": -np.sum(self.m * (x @ self.g))}
+                "elastic": np.sum(self.tension(l) * (l - self.L)) / 2,
+                "gravitational": -np.sum(self.m * (x @ self.g)) -
+                np.sum(self.load * x)}
 
     def nearest(self, x: Array, alive: Array) -> float:
         """The least distance of two nodes without a common spring [m]. Where

@@ -60,7 +60,7 @@ class Run:
         """x, v, masses, springs (i, j, K, L) of the last state."""
         nodes = [re.sub("mass|velocity|held", "", line + " 0 0 0").split()
                  for line in re.findall("^node (.*)", self.bits, re.M)]
-        springs = re.findall("^spring (.*)", self.bits, re.M)
+        springs = re.findall("^spring (.*?)(?: cable| strut)?$", self.bits, re.M)
         a = np.array([n[:7] for n in nodes], float).reshape(-1, 7)
         return (a[:, :3], a[:, 4:], a[:, 3],
                 np.array([s.split() for s in springs], float).reshape(-1, 4))
@@ -233,6 +233,10 @@ def quantity(name: str, net: Net, x: Array, v: Array, t: float) -> Any:
             "energy": lambda: sum(e.values()),
             "kinetic-energy": lambda: e["kinetic"],
             "elastic-energy": lambda: e["elastic"],
+            "tension": lambda: np.sum(net.tension(l)[
+                (net.i == min(map(int, rest))) & (
+                    net.j == max(map(int, rest)))]),
+            "max-tension": lambda: np.max(net.tension(l), initial=0),
             "max-stretch": lambda: np.max(
                 (l / net.L - 1)[net.L > 0], initial=0),
             "drape-height": lambda: x[:, 2].min(),
@@ -248,7 +252,8 @@ def measure(c: Case) -> Broken:
     x, v, m, springs = c.base.net
     late = any("after the end" in a for a in c.base.said)  # a change
     # The forces of xpbd are those of its multipliers.
-    own = "force" in name and c.scene.get("method") == "xpbd"
+    force = "force" in name or "tension" in name
+    own = force and c.scene.get("method") == "xpbd"
     if got is None or late or own or (len(x), len(springs)) != net.C.shape:
         return None
     theirs, order = np.sort(springs[:, :2], axis=1), np.lexsort((net.j, net.i))
@@ -258,7 +263,7 @@ def measure(c: Case) -> Broken:
         if not np.allclose(a, b, rtol=1e-9):
             return "material", [f"{what}: up to {np.abs(a - b).max():.3g} off"]
     wanted = quantity(name, net, x, v, c.scene["t-end"])
-    scale = 1e-3 * np.abs(net.K * net.L).max(initial=0) * ("force" in name)
+    scale = 1e-3 * np.abs(net.K * net.L).max(initial=0) * force
     if wanted is not None and (len(got) != len(wanted) or np.abs(
             got - wanted).max() > 2e-5 * max(scale, 1e-6, *np.abs(wanted))):
         return name.split()[0], [f"{name}: got {got}, expected {wanted}"]

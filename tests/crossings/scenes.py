@@ -27,7 +27,7 @@ RIVALS = [MESHES, {"stiffness", "modulus"}, {"damping", "drag"},
 UNITS = {word: powers for powers, words in {
     (1, 0): "at u v from to radius x y z about tolerance points thickness",
     (1, -1): "velocity velocities", (0, -1): "turn damping",
-    (0, 1): "until t-end dt", (1, -2): "gravity", (-2, 0): "density",
+    (0, 1): "until t-end dt", (1, -2): "gravity loads", (-2, 0): "density",
     (0, -2): "sides diagonals bend stiffness modulus", (-2, -1): "drag",
 }.items() for word in words.split()}
 
@@ -111,10 +111,14 @@ class Draw:
         pairs = {(k, k + 1) for k in range(n - 1)} | {
             tuple(sorted(self.rng.choice(n, 2, replace=False).tolist()))
             for _ in points}
+        ways = ["", "cable", "strut"] if self.chance(.4) else [""]
         mesh["springs"] = [(i, j, *(
             (self.number(10, 1000), self.number(0, 1.5 * float(
                 norm(np.subtract(points[i], points[j])))))
-            if self.chance(.5) else (None, None))) for i, j in sorted(pairs)]
+            if self.chance(.5) else (None, None)), self.one_of(ways))
+            for i, j in sorted(pairs)]
+        mesh |= self.some(.3, loads=[(int(k), *self.vector(3)) for k in
+                                     self.rng.integers(0, n, 2)])
         return mesh | self.some(.5, masses=[
             self.number(1e-3, 10) if self.chance(.7) else None for _ in points])
 
@@ -215,8 +219,12 @@ class Draw:
                 "elastic-energy"]
         if not s.get("sheet") or "tear-strain" in s:
             all_.append("drape-height")
-        if Net(self.s).held():
+        net = Net(self.s)
+        if net.held():
             all_ += ["pin-force"] * 3
+        if not s.get("sheet") and len(net.i):
+            e = int(self.rng.integers(len(net.i)))
+            all_ += ["max-tension", f"tension {net.i[e]} {net.j[e]}"]
         if s.get("plane") or s.get("sphere"):
             all_ += ["contact-force"] * 5
         return self.one_of(all_)
@@ -355,8 +363,10 @@ def mesh_files(field: str, mesh: Scene) -> list[tuple[str, str]]:
              " held" * (k in mesh.get("held", [])) for k, (p, w, m) in
              enumerate(zip(points, v, mesh.get("masses") or
                            [None] * len(points)))]
-    lines += [f"spring {i} {j}" + ("" if K is None else f" {K!r} {L!r}")
-              for i, j, K, L in mesh.get("springs", [])]
+    lines += [f"spring {i} {j}" + ("" if K is None else f" {K!r} {L!r}") +
+              "".join(" " + w for w in way if w)
+              for i, j, K, L, *way in mesh.get("springs", [])]
+    lines += [f"load {row(a)}" for a in mesh.get("loads", [])]
     return [("net", "\n".join(lines + ["face " + row(f) for f in faces]) +
              "\n")]
 
@@ -380,7 +390,7 @@ def scaled(s: Scene, length: float, time: float) -> Scene:
             return {w: walk(w, b) for w, b in a.items()}
         if word == "springs":
             return [(i, j, *((None, None) if K is None else (
-                K / time**2, L * length))) for i, j, K, L in a]
+                K / time**2, L * length)), *way) for i, j, K, L, *way in a]
         if word == "at" and isinstance(a, list):
             return [(t * time, " ".join([w := r.split()[0], *(
                 repr(float(b) * factor(w)) if w in UNITS else b
