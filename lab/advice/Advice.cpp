@@ -123,25 +123,27 @@ std::string extrapolated(const Advice& a) {
 /** The advised scene, its command and its error. */
 std::string recommendation(const Advice& a) {
   using CME212::short_text;
+  const bool rests = !a.at_rest.empty();
   std::vector<std::string> removed;
   for (const PartReport& p : a.parts)
     if (!p.needed) removed.push_back(p.part);
   std::string text =
-      "advice: " + std::to_string(nodes_of(a)) + " nodes, " +
-      std::string(a.model.method->info.name) + ", dt " +
-      short_text(a.model.step.dt) + " s: error of " + name_of(a.measure) + ' ' +
-      with_unit(a.error, a.measure) + " +- " +
-      with_unit(a.uncertainty, a.measure) + " " + asked(a) +
+      "advice: " + std::to_string(nodes_of(a)) + " nodes" +
+      (rests ? " at rest"
+             : ", " + std::string(a.model.method->info.name) + ", dt " +
+                   short_text(a.model.step.dt) + " s") +
+      ": error of " + name_of(a.measure) + ' ' + with_unit(a.error, a.measure) +
+      " +- " + with_unit(a.uncertainty, a.measure) + " " + asked(a) +
       (a.error + a.uncertainty > a.tolerance ? "; it may be more" : "") +
       (a.from_files ? "; the mesh's own error is not known\n" : "\n");
-  text += "  ./cloth " + as_options(a.model) + " --headless\n";
+  text += "  ./cloth " + as_options(a.model) + (rests ? "\n" : " --headless\n");
   if (!a.answer.empty() && a.answer.size() <= 3)
     text += "  " + name_of(a.measure) +
             " by this run:" + numbers(a.answer, a.measure) + '\n';
   text += extrapolated(a);
   if (!removed.empty())
     text += "  not needed for that: " + joined(removed, "; ") + '\n';
-  if (a.model.t_end < a.t_end)
+  if (a.model.t_end < a.t_end && !rests)
     text += "  it ends at " + number(a.model.t_end) + " s instead of " +
             number(a.t_end) + " s: after that " + name_of(a.measure) +
             " changes by less than " + with_unit(a.tolerance / 10, a.measure) +
@@ -150,16 +152,14 @@ std::string recommendation(const Advice& a) {
     return (error ? with_unit(*error, a.measure) : std::string("not run")) +
            what;
   };
-  if (a.checked)
-    text += "  checked: error " + finer(a.half_step, " by half the step") +
-            (a.from_files ? ""
-                          : ", " + finer(a.finer_grid,
-                                         " on twice the cells along each "
-                                         "side")) +
-            '\n';
-  else
-    text += "  not run: predicted from " + std::to_string(a.grids.size()) +
-            (a.from_files ? " steps\n" : " coarser grids\n");
+  text += "  checked: error " +
+          (rests ? "" : finer(a.half_step, " by half the step")) +
+          (rests || a.from_files ? "" : ", ") +
+          (a.from_files
+               ? ""
+               : finer(a.finer_grid, " on twice the cells along each side")) +
+          '\n';
+  if (rests) text += "  at rest: " + a.at_rest + '\n';
   if (a.of_stable > 0)
     text += "  dt is " + CME212::two_digits(a.of_stable) +
             " of the largest stable step\n";
@@ -216,7 +216,14 @@ std::string as_options(const Model& m) {
       return other.instead_of == f.name && !other.values().empty();
     });
     // A run by the advised method has no use for the tolerance.
-    if (replaced || values == usual[std::size_t(&f - &all[0])].values() ||
+    // At rest there is no time.
+    const bool rests = m.from_rest && m.t_end == 0;
+    if (rests && f.name == std::string("from-rest")) {
+      text += " --rest";
+      continue;
+    }
+    if (replaced || (rests && f.name == std::string("t-end")) ||
+        values == usual[std::size_t(&f - &all[0])].values() ||
         f.name == std::string("tolerance"))
       continue;
     for (const std::string& words : values)
@@ -238,8 +245,7 @@ std::string in_words(const Advice& a) {
                          ? recommendation(a)
                          : "no advice: " + a.refusal + '\n' + extrapolated(a);
   if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
-  for (const std::string& note : {a.buckles, a.oblong})
-    if (!note.empty()) text += "  note: " + note + '\n';
+  if (!a.buckles.empty()) text += "  note: " + a.buckles + '\n';
   if (!a.impossible.empty())
     text += "  could not be run: " + joined(a.impossible, "; ") + '\n';
   if (!a.left_out.empty() && a.refusal.empty())
@@ -269,8 +275,7 @@ std::string in_words(const Advice& a) {
   if (a.refusal.empty())
     rows.push_back(
         {a.from_files ? number(a.model.step.dt) : std::to_string(nodes_of(a)),
-         number(a.error), count(a.evaluations),
-         a.seconds > 0 ? number(a.seconds) : "not run", "advised"});
+         number(a.error), count(a.evaluations), number(a.seconds), "advised"});
   text += in_columns(rows);
   rows = {{"nodes tried", "method", "dt [s]", "error" + unit,
            "spring evaluations"}};
@@ -292,8 +297,7 @@ std::string in_words(const Advice& a) {
   if (a.refusal.empty()) {
     if (const std::string acts = by_default(a.model); !acts.empty())
       text += "active by default: " + acts + '\n';
-    text += "the advised run takes " +
-            (a.seconds > 0 ? number(a.seconds) + " s, " : "") +
+    text += "the advised run takes " + number(a.seconds) + " s, " +
             CME212::two_digits(a.work) + " spring evaluations; ";
   }
   return text + "the pilots took " + number(a.spent) + " s, " +

@@ -37,8 +37,7 @@ struct AdvisedRun {
   double error = std::numeric_limits<double>::infinity();
   double uncertainty = 0;  ///< the error may be that much larger
   double seconds = 0;      ///< its time on this machine
-  bool checked = false;    ///< it was run; false: its error is predicted
-  Answer answer = {};      ///< if it was run
+  Answer answer = {};
   /** The errors by half the step, and by half the step on a grid of twice the
    * cells; nullopt: not run. */
   std::optional<double> half_step = {}, finer_grid = {};
@@ -59,8 +58,8 @@ struct Advice : AdvisedRun {
   int perturbed = 0;                ///< how many perturbed runs were made
   std::string refusal;  ///< why no advice is given; empty: advice is given
   std::string trivial;  ///< why nothing has to be computed; or empty
+  std::string at_rest;  ///< why the cloth is at rest at its end; or empty
   std::string buckles;  ///< a motion in a plane that would leave it; or empty
-  std::string oblong;   ///< what square cells would change; or empty
   std::vector<std::string> left_out;    ///< runs that the budget did not allow
   std::vector<std::string> impossible;  ///< why runs could not be made
   double t_end = 0;  ///< [s] of the question; model may end earlier, at rest

@@ -19,6 +19,7 @@ struct Search {
   ChoiceSearch choice{q, grids, parts};
   CME212::Clock clock = {};
   std::string chaos = {};  // why the motion has no answer; or empty
+  std::optional<AdvisedRun> rest = {};
 
   /** @param runs of the scene that the budget allows, if it is not given */
   Search(const Model& m, const AdviceRules& rules, double runs)
@@ -29,7 +30,7 @@ struct Search {
     return !chaos.empty();
   }
 
-  /** Step 2 of README.md: on the coarsest grid with an error of at most twice
+  /** Step 3 of README.md: on the coarsest grid with an error of at most twice
    * the tolerance, or else the finest one. */
   void study_parts() {
     std::size_t k = 0;
@@ -43,7 +44,7 @@ struct Search {
     parts.study(k);
   }
 
-  /** Steps 1 to 4.
+  /** Steps 1 to 5.
    * @return why no more grids were run; empty: none was needed */
   std::string run() {
     const std::string why = run_grids();
@@ -60,6 +61,8 @@ struct Search {
     for (;;) {
       if (const std::string why = grids.add(); !why.empty()) return why;
       if (grids.knows_limit()) {
+        rest = grids.at_rest();
+        if (rest) return "";
         study_parts();
         if (q.from_files() ? !chaos.empty() : is_chaotic()) return chaos;
         choice.search();
@@ -77,7 +80,8 @@ struct Search {
 
   /** The advice: to run @a found; or its @a refusal, if there is one. */
   Advice finish(const std::string& refusal,
-                const std::optional<Choice>& found = {}) {
+                const std::optional<AdvisedRun>& found = {},
+                const std::vector<std::string>& removed = {}) {
     Advice& a = q.advice;
     a.refusal = refusal;
     a.trivial = grids.trivial();
@@ -88,13 +92,12 @@ struct Search {
     static_cast<AdvisedRun&>(a) = *found;
     const StepCosts costs(a.model);
     a.evaluations = costs.evaluations(a.work);
-    a.of_stable = costs.of_stable(a.model);
-    auto removed = found->removed;  // of two equal parts each is counted
+    if (!a.model.from_rest) a.of_stable = costs.of_stable(a.model);
+    auto left = removed;  // of two equal parts each is counted
     for (PartReport& p : a.parts) {
-      const auto it = std::ranges::find(removed, p.part);
-      p.needed =
-          it == removed.end() && !goes_with_another(p.part, found->removed);
-      if (it != removed.end()) removed.erase(it);
+      const auto it = std::ranges::find(left, p.part);
+      p.needed = it == left.end() && !goes_with_another(p.part, removed);
+      if (it != left.end()) left.erase(it);
     }
     return std::move(a);
   }
@@ -107,28 +110,28 @@ Advice advise(const Model& m, const AdviceRules& rules) {
   if (!s.grids.trivial().empty()) {  // on any grid, before a run
     Advice a = s.finish("");
     a.answer = answer(Scene(m));
-    a.model = m, a.error = 0, a.work = s.q.own_work;
+    a.model = m, a.model.t_end = 0, a.error = 0;
     return a;
   }
   std::string refusal = s.run();
   if (!s.chaos.empty() || s.grids.tolerance() == 0) return s.finish(refusal);
+  if (s.rest) return s.finish("", s.rest);
   std::optional<Choice> found = s.choice.found();
-  if (!found && !s.q.pilots.left_out().empty())
-    if (const auto foreseen = s.grids.foresee()) found = Choice{*foreseen};
-  if (!found && refusal.empty())
+  if (!found && !s.choice.objection().empty())
+    refusal = s.choice.objection();
+  else if (!found && refusal.empty())
     refusal =
         rules.keeps_method || rules.keeps_step
             ? "no step of " + std::string(m.method->info.name) +
                   " that was tried meets the tolerance"
             : "no method meets the tolerance with the steps that were tried: "
               "the smallest was 1/8 of the largest stable one";
-  // Step 5, once more: the advised run, too, may be chaotic.
+  // Step 6, once more: the advised run, too, may be chaotic.
   if (!s.grids.grids().empty() && !s.q.from_files() &&
       s.is_chaotic(found ? found->scatter : 0))
     return s.finish(s.chaos);
   if (!found) return s.finish(refusal);
-  s.grids.try_squares();  // step 6
-  return s.finish("", found);
+  return s.finish("", found, found->removed);
 }
 
 Advice assess(const Model& m, const AdviceRules& rules) {

@@ -12,7 +12,8 @@ namespace lab {
 struct AdviceRules {
   /** The work of all pilots, in spring evaluations, so that advice is the same
    * on every machine; 0: the larger of Pilots::usual and one run of the scene;
-   * eight runs, if its own grid is run: of a mesh from files, and by assess().
+   * 24 runs of a mesh from files, and eight by assess(), which run its own
+   * grid.
    */
   double budget = 0;
   /** Advise the method or the step of the scene. */

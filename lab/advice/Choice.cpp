@@ -86,7 +86,7 @@ Trial ChoiceSearch::run(const Choice& c, const Model& m, double work,
                        work, c.removed, shake);
 }
 
-bool ChoiceSearch::holds(Choice& c, double most) {
+ChoiceSearch::Outcome ChoiceSearch::judge(Choice& c, double most) {
   const Trial t = run(c, c.model, c.work, "");
   learn(c, t, 1);
   // Of Newton's iterations and of inner steps the number is known only now.
@@ -97,22 +97,33 @@ bool ChoiceSearch::holds(Choice& c, double most) {
     real_work_.try_emplace(c.model.method, 1);
   }
   c.error = grids_.error_of(t);
-  c.seconds = t.seconds, c.answer = t.answer, c.checked = true;
+  c.seconds = t.seconds, c.answer = t.answer;
   c.uncertainty = grids_.grids().uncertainty();
   q_.advice.choices.push_back(c);
-  if (!grids_.accepts(c.error) || !(c.work < most)) return false;
+  if (!grids_.accepts(c.error) || !(c.work < most)) return misses;
   Model smaller = c.model;
   smaller.step.dt /= 2;
   const Trial half = run(c, smaller, 2 * c.work, " and half the step");
   learn(c, half, 0.5);
   c.half_step = grids_.error_of(half);
-  if (!grids_.accepts(*c.half_step)) return false;
+  if (!grids_.accepts(*c.half_step)) return misses;
   c.half = half.answer;
-  if (!holds_on_finer_grids(c)) return false;
+  if (!grids_.follows(t, c.model.t_end)) {
+    objection_ = "what meets the tolerance at the end is another motion before";
+    return misses;
+  }
+  if (!holds_on_finer_grids(c)) return by_accident;
   c.scatter = perturb(c);
   c.uncertainty += scatter_share * c.scatter;
-  return c.scatter <= grids_.tolerance() / 2 &&
-         grids_.accepts(c.error, c.uncertainty);
+  if (c.scatter > grids_.tolerance() / 2 ||
+      !grids_.accepts(c.error, c.uncertainty))
+    return by_accident;
+  if (!q_.pilots.affords(3 * c.work, "what its run would warn of"))
+    return misses;
+  const std::string warning = q_.pilots.warning_of(c.model, q_.scene, c.work);
+  if (warning.empty()) return holds;
+  objection_ = "a run that meets the tolerance warns: " + warning;
+  return misses;
 }
 
 bool ChoiceSearch::holds_on_finer_grids(Choice& c) {
@@ -182,7 +193,8 @@ void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
         fail.contains({c.kind, method}) || !may_hold(c))
       continue;
     if (!q_.pilots.affords(c.work, "more expensive choices", 0.33)) break;
-    if (holds(c, most)) {
+    const Outcome outcome = judge(c, most);
+    if (outcome == holds) {
       best = c;
       continue;
     }
@@ -190,10 +202,9 @@ void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
         errors.try_emplace({c.kind, method}, infinite).first->second;
     // From files all error is by the step; implicit steps begin very long.
     const bool bounded = std::isnormal(method->info.limit);
-    const bool by_accident = c.half_step && grids_.accepts(*c.half_step);
     if (!c.grid.sides.empty() &&
-        (by_accident || (bounded && c.error > 0.9 * before)))
-      fail.insert({c.kind, by_accident ? method : nullptr});
+        (outcome == by_accident || (bounded && c.error > 0.9 * before)))
+      fail.insert({c.kind, outcome == by_accident ? method : nullptr});
     before = c.error;
   }
 }
@@ -221,7 +232,7 @@ void ChoiceSearch::search_steps() {
                             Effect(grids_.grids().limit().size()), 0};
   for (Choice& c : choices({own}))
     if (q_.pilots.affords(c.work, "smaller steps", 0.33) &&
-        holds(c, infinite)) {
+        judge(c, infinite) == holds) {
       found_ = c;
       return;
     }

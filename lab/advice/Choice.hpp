@@ -36,6 +36,8 @@ class ChoiceSearch {
   void search_steps();
 
   const std::optional<Choice>& found() const { return found_; }
+  /** Why choices that meet the tolerance were not taken; or empty. */
+  const std::string& objection() const { return objection_; }
 
  private:
   /** A choice that was run: its step added this to the error by the pilot on
@@ -51,6 +53,7 @@ class ChoiceSearch {
   GridStudy& grids_;
   PartStudy& parts_;
   std::optional<Choice> found_;
+  std::string objection_;
   std::vector<StepError> step_errors_;
   /** Where the work depends on the motion: that of the last run over what was
    * predicted. */
@@ -68,10 +71,13 @@ class ChoiceSearch {
   /** Replace @a best by the cheapest choice that holds, if one is cheaper. */
   void try_all(const std::vector<GridStudy::Grid>& grids,
                std::optional<Choice>& best);
+  /** Smaller steps may mend what `misses`; `by_accident`: refinements miss. */
+  enum Outcome { holds, misses, by_accident };
   /** Run @a c, which meets the tolerance if its error and a share of the
-   * uncertainty do; then its refinements and, last, from perturbed starts.
+   * uncertainty do; then its refinements, its motion before the end, from
+   * perturbed starts and, last, as ./cloth does.
    * @param most the work from which @a c is not wanted */
-  bool holds(Choice& c, double most);
+  Outcome judge(Choice& c, double most);
   bool holds_on_finer_grids(Choice& c);
   Trial run(const Choice& c, const Model& m, double work, const std::string& by,
             const Shake& shake = {});

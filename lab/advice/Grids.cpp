@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "CME212/Util.hpp"
+#include "lab/advice/Constants.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Compose.hpp"
 #include "lab/stepping/Trial.hpp"
@@ -39,7 +40,7 @@ Question::Question(const Model& m, const AdviceRules& rules, double runs)
 GridStudy::GridStudy(Question& q) : q_(q), most_nodes_(q.rules.most_nodes) {
   if (q.from_files()) {
     most_nodes_ = infinite;
-    q.pilots.allow(8 * q.own_work);
+    q.pilots.allow(constant.mesh_runs * q.own_work);
     choose_pilots();
     pilot_.step = {.dt = step_of(pilot(q.scene, 1))};
     return;
@@ -109,7 +110,7 @@ std::string GridStudy::add() {
     invalid_ = 0;
     run.work = costs->of_run(run.model);
     run.evaluations = costs->evaluations(run.work);
-    if (q_.from_files()) q_.pilots.allow(8 * run.work);
+    if (q_.from_files()) q_.pilots.allow(constant.mesh_runs * run.work);
     if (!q_.pilots.affords(run.work,
                            q_.from_files() ? "smaller steps" : "a finer grid",
                            are_enough() ? 0.7 : 1))
@@ -238,41 +239,15 @@ std::string GridStudy::trivial() const {
   if (grids().empty() || grids().limit().empty()) return "";
   const Answer at_start = answer_at_start();
   if (at_start.empty()) return "";
-  const double change = distance_of(at_start, grids().limit());
+  double change = distance_of(at_start, grids().limit());
+  for (const Answer& then : grids().back().trial.earlier)
+    change = std::max(change, then.size() == at_start.size()
+                                  ? distance_of(at_start, then)
+                                  : infinite);
   if (!(change + grids().uncertainty() <= tolerance())) return "";
   return name_of(what) + " changes by only " + with_unit(change, what) +
          " until the end, which is less than the tolerance: its initial value "
          "is an answer";
-}
-
-std::optional<AdvisedRun> GridStudy::foresee() const {
-  if (!knows_limit()) return {};
-  // Pilots tell nothing of another method or of a step that was asked for.
-  if (q_.rules.keeps_step ||
-      (q_.rules.keeps_method && q_.scene.method != pilot_.method))
-    return {};
-  for (int level = grids()[0].level; level < level_ + 12; ++level) {
-    AdvisedRun r{.model = pilot(on_level(level), factor(level))};
-    if (double(nodes_of(r.model)) > most_nodes_) return {};
-    if (!costs_of(r.model)) continue;
-    r.model.step = {.dt = step_of(r.model)};
-    r.error = size_of(grids().error(q_.from_files()
-                                        ? grids()[0].trial.dt / r.model.step.dt
-                                        : factor(level)));
-    r.uncertainty = grids().uncertainty() + scatter_share * q_.advice.scatter;
-    if (!(r.error + r.uncertainty <= tolerance())) continue;
-    r.work = work_of_run(r.model);
-    // A step on a mesh from files was run, maybe with half of it.
-    for (std::size_t k = 0; k < grids().size() && q_.from_files(); ++k) {
-      const Trial& t = grids()[k].trial;
-      if (grids()[k].level == level)
-        r.answer = t.answer, r.seconds = t.seconds, r.checked = true;
-      if (grids()[k].level == level + 2 && r.checked)
-        r.half_step = grids()[k].error;
-    }
-    return r;
-  }
-  return {};
 }
 
 }  // namespace lab

@@ -93,10 +93,6 @@ class GridStudy {
   /** False if a finer grid can't lead to a choice, or, if one was @a found, to
    * a cheaper one. */
   bool may_go_on(bool found) const;
-  /** The budget ended: all parts, by the pilots' method, on the coarsest grid
-   * that is predicted to meet the tolerance; on a mesh from files by the
-   * largest step that does. */
-  std::optional<AdvisedRun> foresee() const;
   /** Why the answer of this scene needs no computation; or empty. */
   std::string trivial() const;
 
@@ -116,6 +112,29 @@ class GridStudy {
    * of @a start, itself one of them: of fewer cells along one side. */
   std::vector<Grid> frontier(const Grid& start);
 
+  // Moments.cpp: motion and rest
+
+  /** Three looks of Trial::earlier, from 1 on. The question draws two, in the
+   * second quarter and in the second half of the time in which it moves; at the
+   * third one the answer is the farthest from that at the end. */
+  std::array<std::size_t, 3> moments() const;
+  /** Is a run to @a t_end [s] the motion of the scene at these moments? */
+  bool follows(const Trial& t, double t_end) const;
+  /** Is @a a the answer at look @a k, to the tolerance and at most half as much
+   * for the uncertainty of the limit then? */
+  bool follows(const Answer& a, std::size_t k) const;
+  /** The distance of two answers at look @a k. If one event has not happened
+   * yet, it is how long ago the other one did; infinite if it is no event. */
+  double apart(const Answer& a, const Answer& b, std::size_t k) const;
+  /** Of look @a k [s]. */
+  double time_of(std::size_t k) const {
+    return double(k) / Trial::looks * q_.scene.t_end;
+  }
+  /** The scene at rest, with the proof as advice.at_rest: if the finest pilot
+   * does not move at the end and at two moments of the last quarter, has this
+   * answer there, and the rest is stable. */
+  std::optional<AdvisedRun> at_rest();
+
   // Refusals.cpp: chaos, and notes
 
   /** The perturbation of a start: within the plane in which the cloth moves, if
@@ -126,8 +145,6 @@ class GridStudy {
    * @return the reason if this or @a scatter, that of the advised run, exceeds
    *         half of the tolerance: then the motion is chaotic; else empty */
   std::string find_chaos(double scatter = 0);
-  /** Tell what square cells would change on the finest grid. */
-  void try_squares();
 
  private:
   static constexpr double most_uncertain = 0.6;  // share of the tolerance
@@ -168,6 +185,9 @@ class GridStudy {
   int lowest(unsigned side) const;
   std::optional<Grid> that_meets(const Sides& s, double most_work);
   void thin(Grid grid, std::vector<Grid>& all);
+
+  double drawn(unsigned k) const;
+  bool is_still(std::size_t k) const;
 
   void find_plane(const Cloth& g);
   void find_buckling(const GridReport& run);

@@ -18,13 +18,11 @@ void PartStudy::study(std::size_t k) {
 
 double PartStudy::change(const Trial& without, const Trial& whole) const {
   double most = grids_.distance_of(without.answer, whole.answer);
-  for (const std::size_t k : {51, 57}) {  // at 80 and 90 % of the time
-    if (std::min(without.earlier.size(), whole.earlier.size()) < k) continue;
-    const Answer &a = without.earlier[k - 1], &b = whole.earlier[k - 1];
-    if (a.size() != b.size()) return infinite;  // one has not happened yet
-    const double then = grids_.distance_of(a, b);
-    if (then > grids_.tolerance()) most = std::max(most, then);
-  }
+  const auto &a = without.earlier, &b = whole.earlier;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+    if (const double then = grids_.apart(a[k], b[k], k + 1);
+        then > grids_.tolerance())
+      most = std::max(most, then);
   return most;
 }
 

@@ -4,10 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lab/advice/Advice.hpp"
+#include "lab/advice/Constants.hpp"
 #include "lab/advice/Variation.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/StiffSplit.hpp"
 #include "lab/scenes/Compose.hpp"
+#include "lab/scenes/Fields.hpp"
+#include "lab/scenes/Warnings.hpp"
 #include "lab/stepping/StepLimits.hpp"
 
 namespace lab {
@@ -58,6 +62,12 @@ double StepCosts::of_run(const Model& m) const {
 }
 
 double work_of_run(const Model& m) { return StepCosts(m).of_run(m); }
+
+double work_at_rest(const Model& m) {
+  Cloth g;
+  build_model(g, m, mesh_of(m));
+  return constant.rest_factors * factor_sweeps(g) * double(g.num_edges());
+}
 
 std::optional<StepCosts> costs_of(const Model& m, std::string* why) {
   try {
@@ -117,6 +127,38 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
   }
   if (keeps) done_.emplace_back(key, t);
   return t;
+}
+
+/** The warnings before a run of @a m. */
+static std::vector<std::string> warnings_of(const Model& m) {
+  const Scene scene(m);
+  return warnings(m, scene.mesh().mesh, scene.cloth(), scene.dt());
+}
+
+std::string Pilots::warning_of(const Model& m, const Model& scene,
+                               double work) {
+  const auto [known, is_new] = warnings_.try_emplace(as_options(m));
+  std::string& said = known->second;
+  if (!is_new) return said;
+  spent_ += 3 * work;
+  Model printed = m;  // numbers have fewer digits there
+  for (const Field& f : fields_of(printed))
+    if (const auto words = f.values(); !words.empty() && words[0] != "")
+      set_field(printed, f.name, words);
+  if (const auto all = warnings_of(printed);
+      all.size() > warnings_of(scene).size())
+    return said = all.back();
+  Scene run(printed);
+  Observer observer(run);
+  run.watch(printed.t_end);
+  tell_("what its run would warn of", std::min(1., spent_ / budget_));
+  if (!run.run_to(printed.t_end, observer.after_steps()))
+    return said = text_of(run.failure());
+  if (run.watched().count() > 0) return said = run.missed_text();
+  const Verdict& verdict = run.witness()->verdict(&observer);
+  if (!verdict.fine())
+    said = verdict.wrong() ? verdict.wrong_text() : verdict.difference();
+  return said;
 }
 
 }  // namespace lab

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -45,6 +46,9 @@ class StepCosts {
 
 /** StepCosts::of_run() of @a m.  Throws as StepCosts */
 double work_of_run(const Model& m);
+
+/** About the work of putting @a m to rest.  Throws InputError, SceneError */
+double work_at_rest(const Model& m);
 
 /** The costs of @a m; nothing if it is no scene: some pins lie between the
  * nodes of its grid, or nodes are nearer than the thickness of self-collision.
@@ -93,6 +97,13 @@ class Pilots {
             const Shake& shake = {},
             const std::function<void(const Cloth&)>& look = nullptr);
 
+  /** What ./cloth would warn of if it ran @a m as its options say: its Witness
+   * is asked. Nothing counts of which @a scene warns, too; "" if nothing is
+   * left.
+   * @param work of the run, of which it takes three times as much
+   * Throws Interrupted, and all other exceptions of Scene */
+  std::string warning_of(const Model& m, const Model& scene, double work);
+
  private:
   /** Two runs of a scene differ in this, or in nothing: the nodes of each
    * sheet, the removed parts, sorted, the method, all of its step, and t_end.
@@ -106,6 +117,7 @@ class Pilots {
   std::vector<std::string> left_out_, impossible_;
   std::string known_;
   std::vector<std::pair<Key, Trial>> done_;
+  std::map<std::string, std::string> warnings_;  // by options
   Tell tell_;
 };
 

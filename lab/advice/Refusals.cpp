@@ -142,33 +142,4 @@ void GridStudy::find_buckling(const GridReport& run) {
                         " if its start is moved out of that plane by 1e-6 m";
 }
 
-void GridStudy::try_squares() {
-  const GridReport& finest = grids().back();
-  const double f = factor(finest.level);
-  Sides s = sides_of(finest.level);
-  double longest = 1;
-  for (std::size_t k = 0; k < s.size(); ++k) {
-    const Sheet& sheet = q_.scene.sheets[k];
-    const double ratio = norm(sheet.u) / (sheet.nodes[0] - 1.) /
-                         (norm(sheet.v) / (sheet.nodes[1] - 1.));
-    s[k] = {f * std::sqrt(ratio), f / std::sqrt(ratio)};
-    for (unsigned along : {0, 1})  // a grid has at least 2 cells
-      if ((sheet.nodes[along] - 1) * s[k][along] < 1.5) return;
-    longest = std::max({longest, ratio, 1 / ratio});
-  }
-  if (!(longest > 1.2) ||
-      !q_.pilots.affords(longest * finest.work, "square cells", 0.5))
-    return;
-  const Model m = pilot(on_grid(s), f * std::sqrt(longest));
-  const auto costs = costs_of(m);
-  if (!costs) return;
-  const Trial t = q_.pilots.run(m, "on square cells", costs->of_run(m));
-  const double off = t.ok() ? distance_of(t.answer, finest.trial.answer) : 0;
-  if (off > tolerance() / 2)
-    q_.advice.oblong =
-        "springs along oblong cells are another material: on square cells " +
-        name_of(q_.scene.measure) + " changes by " +
-        with_unit(off, q_.scene.measure);
-}
-
 }  // namespace lab

@@ -54,7 +54,10 @@ std::vector<Variation> without_parts(const Model& m) {
     all.push_back({part, m});
     change(all.back().model);
   };
-  if (m.edges.diagonals)
+  const bool ropes = std::ranges::all_of(m.sheets, [](const Sheet& s) {
+    return s.nodes[0] == 1 || s.nodes[1] == 1;
+  });
+  if (m.edges.diagonals && (!ropes || m.sheets.empty()))
     drop("edges: diagonals", [](Model& x) { x.edges.diagonals = false; });
   if (m.edges.bend) drop("edges: bend", [](Model& x) { x.edges.bend = false; });
   // Without gravity its energy would be another quantity.

@@ -408,7 +408,7 @@ int parse(int argc, char** argv, Options& o) {
   app.add_option("--advise-work", o.advise_work,
                  "spring evaluations that the trial runs may take; 0: the "
                  "larger of 4e8, a few seconds, and the work of one run, or of "
-                 "eight for a mesh from files and --assess");
+                 "24 for a mesh from files, eight for --assess");
   app.add_flag("--assess", o.assess,
                "find by trial runs how large the errors of this grid, step and "
                "method are, and the largest step that meets the tolerance")

@@ -88,6 +88,7 @@ int take_advice(Options& o) {
   if (!o.advised.empty())
     CME212::write_file(o.advised, to_scene_file(advice.model));
   o.model = advice.model;
+  o.rest = !advice.at_rest.empty();
   return o.automatic ? -1 : 0;
 }
 

@@ -90,8 +90,11 @@ inline double factor_sweeps(const Cloth& g) {
 /** The result of a run. */
 struct Trial {
   Answer answer;  ///< empty if the run failed
-  /** Its value at 1/64, 2/64 ... 63/64 of the time; empty if it had none. */
+  /** Its value at 1/64, 2/64 ... 63/64 of the time: a parabola through three
+   * steps; of a measure over time, and where it had none before, that of the
+   * next step. Empty if it had none. */
   std::vector<Answer> earlier;
+  std::vector<double> kinetic;  ///< energy after these times, and at the end [J]
   static constexpr int looks = 64;
   std::string failure;  ///< why it failed; else empty
   double work = 0;      ///< springs times force evaluations and products with
