@@ -94,7 +94,8 @@ struct Trial {
    * steps; of a measure over time, and where it had none before, that of the
    * next step. Empty if it had none. */
   std::vector<Answer> earlier;
-  std::vector<double> kinetic;  ///< energy after these times, and at the end [J]
+  std::vector<double>
+      kinetic;  ///< energy after these times, and at the end [J]
   static constexpr int looks = 64;
   std::string failure;  ///< why it failed; else empty
   double work = 0;      ///< springs times force evaluations and products with

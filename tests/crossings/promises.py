@@ -60,7 +60,8 @@ class Run:
         """x, v, masses, springs (i, j, K, L) of the last state."""
         nodes = [re.sub("mass|velocity|held", "", line + " 0 0 0").split()
                  for line in re.findall("^node (.*)", self.bits, re.M)]
-        springs = re.findall("^spring (.*?)(?: cable| strut)?$", self.bits, re.M)
+        springs = re.findall(
+            "^spring (.*?)(?: cable| strut)?$", self.bits, re.M)
         a = np.array([n[:7] for n in nodes], float).reshape(-1, 7)
         return (a[:, :3], a[:, 4:], a[:, 3],
                 np.array([s.split() for s in springs], float).reshape(-1, 4))
