@@ -261,7 +261,7 @@ def keep_answers(check: Check) -> None:
         for test, result in check.judge(case, {
                 test: check.tests[test] for id in case.lost
                 for test in course.tasks[id].tests}).items():
-            if result.mark:
+            if result.mark and test not in recognize.DRAWN:
                 found.setdefault(test, []).append((name, result.mark))
         write_answers(found)
 

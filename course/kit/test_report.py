@@ -7,6 +7,7 @@ import pathlib
 import re
 import tempfile
 import unittest
+import unittest.mock
 import zipfile
 
 import diagnosis
