@@ -343,27 +343,8 @@ TEST(Compose, DragPerAreaIsSharedByTheNodesAsTheirMassIs) {
   EXPECT_NEAR(drag[g.node(0).id()], 3 * 2 / 12. / 4, 1e-15);  // a corner
 }
 
-// A sheet that falls loose has nothing to feel but its weight and its drag:
-// v' = -g - gamma v, gamma = drag/density, whatever the grid.
-TEST(Compose, ALooseSheetFallsAsAPointWithDragDoes) {
-  const double gamma = 5, t = 0.5;
-  const double z = -grav / gamma * (t - (1 - std::exp(-gamma * t)) / gamma);
-  for (const char* nodes : {"nodes 3 3", "nodes 113 113"}) {
-    Model m = with_sheet(nodes);
-    m.material.density = 0.2;
-    m.material.drag = gamma * 0.2;
-    m.stiffness = 1;
-    m.method = &table::pefrl;
-    m.step.dt = t / 64;
-    Scene scene(m);
-    ASSERT_TRUE(scene.run_to(t)) << text_of(scene.failure());
-    EXPECT_NEAR(center_of_mass(scene.cloth()).z, z, 1e-7) << nodes;
-    for (Node n : scene.cloth().nodes())
-      ASSERT_NEAR(n.position().z, z, 1e-7) << nodes;
-  }
-}
-
-// So does the point of each method, whatever that makes of drag.
+// A sheet that falls loose has nothing to feel but its weight and its drag, by
+// v' = -g - gamma v, gamma = drag/density: as a point, by each method.
 TEST(Compose, ALooseSheetFallsAsAPointByEachMethod) {
   Model m = with_sheet("nodes 4 3");
   m.material.density = 0.2;

@@ -223,17 +223,6 @@ TEST(Guard, TellsAnOscillationFromDivergence) {
   EXPECT_LT(looks(1.02), 50);
 }
 
-// It gains 173 J and 1.75e6 J from 0: whatever K, that is noticed.
-TEST(Guard, StopsXpbdThatGainsEnergy) {
-  for (double K : {1e4, 1e6, 1e8}) {
-    Model m = sheet(25, "xpbd", 0.0333);
-    m.gravity = grav;
-    m.pins = {{0, 0, {}, {}, {}}, {1, 0, {}, {}, {}}};
-    m.stiffness = K;
-    EXPECT_TRUE(begins(failure_of(m), "diverged in step ")) << K;
-  }
-}
-
 // Who looks at a run does not change what comes out of it.
 TEST(Guard, JudgesTheSameWhoeverLooks) {
   Model slow = sheet(8, "implicit-euler", 0.5);
