@@ -320,8 +320,8 @@ def rest(c: Case) -> Broken:
         return None
     net, (x, v, _, _) = Net(c.scene), c.rest.net
     free = np.setdiff1d(np.arange(net.n), net.held())
-    load = (norm(net.m[:, None] * net.g) + norm(net.c) * norm(net.wind) +
-            (net.K * net.L).max(initial=0))
+    load = (norm(net.m[:, None] * net.g + net.load) + (net.K * net.L).max(
+        initial=0) + norm(net.c) * norm(net.wind))
     left = presses(net, x, 0 * v, 0.)[1]
     hit = any("velocity" in p for field in ("plane", "sphere")
               for p in c.scene.get(field, []))
