@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "lab/advice/Constants.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/stepping/Trial.hpp"
 
@@ -114,7 +115,7 @@ ChoiceSearch::Outcome ChoiceSearch::judge(Choice& c, double most) {
   }
   if (!holds_on_finer_grids(c)) return by_accident;
   c.scatter = perturb(c);
-  c.uncertainty += scatter_share * c.scatter;
+  c.uncertainty += constant.of_scatter * c.scatter;
   if (c.scatter > grids_.tolerance() / 2 ||
       !grids_.accepts(c.error, c.uncertainty))
     return by_accident;
@@ -171,13 +172,12 @@ double ChoiceSearch::perturb(const Choice& c) {
 }
 
 bool ChoiceSearch::may_be_cheaper(const Choice& c, double most) const {
-  constexpr double surely = 0.4,  // of another run, of what the last one took
-      little = 0.02;              // of what all pilots took
   if (!work_varies(c.model.method->info)) return c.work < most;
   const auto known = real_work_.find(c.model.method);
   return known != real_work_.end()
-             ? surely * std::min(1., known->second) * c.work < most
-             : surely * c.work < most || c.work < little * q_.pilots.spent();
+             ? constant.surely * std::min(1., known->second) * c.work < most
+             : constant.surely * c.work < most ||
+                   c.work < constant.little * q_.pilots.spent();
 }
 
 void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
@@ -214,7 +214,7 @@ void ChoiceSearch::search() {
   if (found_) {
     found_->error = grids_.distance_of(found_->answer, grids_.grids().limit());
     found_->uncertainty =
-        grids_.grids().uncertainty() + scatter_share * found_->scatter;
+        grids_.grids().uncertainty() + constant.of_scatter * found_->scatter;
     if (!(found_->error <= grids_.tolerance())) found_.reset();
   }
   q_.advice.choices.clear();

@@ -51,7 +51,7 @@ GridStudy::GridStudy(Question& q) : q_(q), most_nodes_(q.rules.most_nodes) {
   for (const Sheet& s : q.scene.sheets)
     for (unsigned n : s.nodes)
       if (n > 1) shortest_ = std::min(shortest_, n - 1.);
-  make_levels(2, 3);
+  make_levels(2, constant.most_ratio);
   // Maybe a pin lies between the nodes of these grids.
   if (!costs_of(on_level(some_level()))) make_levels(shortest_, infinite);
   choose_pilots();
@@ -65,14 +65,13 @@ Model GridStudy::pilot(Model m, double factor) const {
 }
 
 void GridStudy::choose_pilots() {
-  constexpr double too_much = 2e6;  // spring evaluations on 8 cells
   pilot_ = {&table::verlet, {.rule = StepRule::safe}};
   const int level = some_level();
   const Model on = on_level(level);
   const auto costs = costs_of(on);
   if (!costs) return;
   double least = costs->of_run(pilot(on, factor(level)));
-  if (!(least > too_much)) return;
+  if (!(least > constant.too_much)) return;
   least /= 2;
   for (const MethodEntry* method :
        {&table::mollified_impulse, &table::tr_bdf2}) {
@@ -133,7 +132,9 @@ std::string GridStudy::add() {
     return q_.advice.share +
            ", but that is 0: expected a tolerance with its unit";
   q_.pilots.knows(so_far());
-  return grids().converges(tolerance() / 10) ? "" : diverging(q_.scene);
+  return grids().converges(constant.negligible * tolerance())
+             ? ""
+             : diverging(q_.scene);
 }
 
 std::string GridStudy::hopeless() const {
@@ -195,7 +196,7 @@ std::string GridStudy::way_out(double work) const {
            " would continue";
   const GridReport& last = grids().back();
   const double u = grids().uncertainty(),
-               reached = std::max(u / most_uncertain,
+               reached = std::max(u / constant.most_uncertain,
                                   grids()[grids().size() - 3].error +
                                       q_.rules.counted_share * u),
                finer = std::pow(std::max(1.5, reached / tolerance()),

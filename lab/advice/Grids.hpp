@@ -11,15 +11,12 @@
 #include <vector>
 
 #include "lab/advice/Advise.hpp"
+#include "lab/advice/Constants.hpp"
 #include "lab/advice/Variation.hpp"
 
 namespace lab {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/** Uncertainty over the largest difference of the perturbed runs: more runs
- * would show a larger one. */
-constexpr double scatter_share = 1.5;
 
 std::size_t nodes_of(const Model& m);
 
@@ -75,17 +72,17 @@ class GridStudy {
   }
   /** A finer grid is not needed to know the limit. */
   bool is_certain() const {
-    return grids().uncertainty() <= 0.25 * tolerance();
+    return grids().uncertainty() <= constant.certain * tolerance();
   }
   /** Nothing can be advised. */
-  bool too_uncertain(double most = most_uncertain) const {
+  bool too_uncertain(double most = constant.most_uncertain) const {
     return grids().uncertainty() > most * tolerance();
   }
   /** Enough grids tell an error; two more, whether there is any hope. */
   bool are_enough(std::size_t more = 0) const {
     return grids().size() >= fewest() + more;
   }
-  bool knows_limit(double most = most_uncertain) const {
+  bool knows_limit(double most = constant.most_uncertain) const {
     return are_enough() && !too_uncertain(most);
   }
   /** Not empty, with the reason, if the budget is too small to know it. */
@@ -147,8 +144,6 @@ class GridStudy {
   std::string find_chaos(double scatter = 0);
 
  private:
-  static constexpr double most_uncertain = 0.6;  // share of the tolerance
-
   Question& q_;
   double most_nodes_;
   double shortest_ = infinite;  // cells along the shortest side of the scene

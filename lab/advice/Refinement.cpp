@@ -4,54 +4,39 @@
 #include <cmath>
 #include <utility>
 
-namespace lab {
+#include "lab/advice/Constants.hpp"
 
-namespace {
-// Source: L. Eca, M. Hoekstra, A procedure for the estimation of the numerical
-// uncertainty of CFD calculations based on grid refinement studies, J. Comput.
-// Phys. 262, 2014. The finest grids of a fit: up to so many times the mesh
-// width of the finest, and at least so many.
-constexpr double widest = 6.5;
-constexpr std::size_t fewest = 4;
-// Orders that are tried, and those that are believed.
-constexpr double lowest = 0.1, highest = 3, apart = 0.05;
-constexpr double believed_from = 0.5, believed_to = 2.1;
-// A lower order is taken if its deviation is at most so many times that of 1
-// and 2.
-constexpr double fits_better = 0.5;
-// Share of the finest grid's error in the uncertainty; factor without an order:
-// on 44 random scenes they held the error of 91 and 92 % of the limits.
-constexpr double of_error = 0.2, not_believed = 1.5, of_three_grids = 3;
-}  // namespace
+namespace lab {
 
 void Refinement::add(GridReport next) {
   grids_.push_back(std::move(next));
   if (size() == 1) fit_.limit = back().trial.answer;
   if (size() < 3) return;
-  std::size_t from = size() - std::min(size(), fewest);
+  std::size_t from = size() - std::min(size(), constant.fewest);
   while (!slow_ && from > 0 &&
-         back().factor <= widest * grids_[from - 1].factor)
+         back().factor <= constant.widest * grids_[from - 1].factor)
     --from;
   const std::span<const GridReport> all = grids_, used = all.subspan(from);
   fit_ = best_fit(used, true);
   for (GridReport& g : grids_) g.error = error(g.factor).size(measure_);
   double moves = 0;
   const auto compare = [&, this](std::span<const GridReport> others) {
-    const Fit fit = fit_.order < believed_from
+    const Fit fit = fit_.order < constant.believed_from
                         ? fit_of_order(others, fit_.order)
                         : best_fit(others, false);
     moves = std::max(moves, distance(fit.limit, fit_.limit, measure_));
   };
   if (slow_ && from > 0)
-    compare(all.subspan(from - 1, fewest));  // the fit before this grid
+    compare(
+        all.subspan(from - 1, constant.fewest));  // the fit before this grid
   else if (used.size() > 3)
     compare(used.first(used.size() - 1)), compare(used.last(used.size() - 1));
   const double error =
       distance(fit_.slope, Answer(fit_.slope.size()), measure_);
-  uncertainty_ =
-      (fit_.believed ? 1 : not_believed) * (of_error * error + fit_.deviation) +
-      moves + distance(fit_.faster, fit_.limit, measure_);
-  if (used.size() == 3) uncertainty_ = of_three_grids * error;
+  uncertainty_ = (fit_.believed ? 1 : constant.not_believed) *
+                     (constant.of_error * error + fit_.deviation) +
+                 moves + distance(fit_.faster, fit_.limit, measure_);
+  if (used.size() == 3) uncertainty_ = constant.of_three_grids * error;
 }
 
 Refinement::Fit Refinement::fit_of_order(std::span<const GridReport> grids,
@@ -92,14 +77,16 @@ Refinement::Fit Refinement::best_fit(std::span<const GridReport> grids,
     half.faster = one.limit;
     return half;
   }
-  Fit best = fit_of_order(grids, lowest);
-  for (double p = lowest + apart; p < highest + apart / 2; p += apart)
+  Fit best = fit_of_order(grids, constant.lowest);
+  for (double p = constant.lowest + constant.apart;
+       p < constant.highest + constant.apart / 2; p += constant.apart)
     if (Fit f = fit_of_order(grids, p); f.deviation < best.deviation) best = f;
-  best.believed = best.order >= believed_from && best.order <= believed_to;
+  best.believed = best.order >= constant.believed_from &&
+                  best.order <= constant.believed_to;
   const Fit& usual = one.deviation <= two.deviation ? one : two;
   if (best.order < 1) best.faster = one.limit;
-  const bool slow = may_be_slow && best.order < believed_from &&
-                    best.deviation <= fits_better * usual.deviation;
+  const bool slow = may_be_slow && best.order < constant.believed_from &&
+                    best.deviation <= constant.fits_better * usual.deviation;
   return best.believed || slow ? best : usual;
 }
 
