@@ -43,7 +43,7 @@ struct Constants {
    * (Refinement.IsUncertainOfWhatGoesByNoOrder) */
   double of_three_grids = 3;
 
-  // What is known, in shares of the tolerance
+  // Known, in shares of the tolerance
 
   /** The limit is known if it is uncertain by at most this [1].
    * (Budget.ARefusalNamesTheToleranceAndTheWorkThatAreEnough) */

@@ -45,7 +45,7 @@ double GridStudy::apart(const Answer& a, const Answer& b, std::size_t k) const {
 
 bool GridStudy::follows(const Trial& t, double t_end) const {
   return std::ranges::all_of(moments(), [&](std::size_t k) {
-    // Of a run that ends earlier, between two of its looks.
+    // A run that ends earlier is read between two of its looks.
     const double look = double(k) * q_.scene.t_end / t_end;
     const auto j = std::size_t(look);
     if (j >= Trial::looks - 1 && t_end < q_.scene.t_end)

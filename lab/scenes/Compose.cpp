@@ -334,77 +334,15 @@ void build_model(Cloth& g, const Model& m, const Net& mesh) {
   order_in_memory(g);
 }
 
-std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built) {
-  const auto a = arrays(g);
-  return quads_with_sides(built.mesh.quads, [&](unsigned i, unsigned j) {
-    const unsigned p = built.ids[i], q = built.ids[j];
-    return a.node_in_use(p) && a.node_in_use(q) &&
-           g.has_edge(a.node_with_id(p), a.node_with_id(q));
-  });
-}
-
-Net mesh_left(const Cloth& g, const BuiltMesh& built) {
-  Net left;
-  std::vector<unsigned> number(built.ids.size());
-  for (unsigned i = 0; i < number.size(); ++i) {
-    if (!arrays(g).node_in_use(built.ids[i])) continue;
-    const Node n = arrays(g).node_with_id(built.ids[i]);
-    number[i] = unsigned(left.points.size());
-    left.points.push_back(n.position());
-    left.velocities.push_back(n.value().vel);
-  }
-  left.quads = quads_left(g, built);
-  for (Quad& q : left.quads)
-    for (unsigned& i : q) i = number[i];
-  return left;
-}
-
-/** How the springs of @a g act, by edge id, as @a net lists them; empty if all
- * pull and push.  @param id of node i, as id(i)   O(springs) */
-template <typename Id>
-std::vector<Acts> ways_of(const Net& net, const Cloth& g, Id id) {
-  std::vector<Acts> all;
-  for (const Spring& s : net.springs) {
-    if (s.acts == Acts::both) continue;
-    all.resize(arrays(g).edge_slots());
-    for (const auto& [node, edge] : arrays(g).neighbors(id(s.i)))
-      if (node == id(s.j)) all[edge] = s.acts;
-  }
-  return all;
-}
-
-Net net_left(const Cloth& g, const BuiltMesh& built,
-             const std::vector<HeldNodes>& held) {
-  Net left = mesh_left(g, built);
-  left.bare_faces = !left.quads.empty();
-  std::vector<unsigned> index(arrays(g).node_slots());  // by id
-  for (unsigned id : built.ids)
-    if (arrays(g).node_in_use(id)) {
-      index[id] = unsigned(left.masses.size());
-      left.masses.push_back(arrays(g).node_with_id(id).value().mass);
-    }
-  const OneWaySprings one_way(
-      ways_of(built.mesh, g, [&](unsigned i) { return built.ids[i]; }));
-  for (Edge e : g.edges())
-    left.springs.push_back({index[e.node1().id()], index[e.node2().id()],
-                            e.value().K, e.value().L, one_way.acts(e.id())});
-  for (const auto& [i, force] : built.mesh.loads)
-    if (arrays(g).node_in_use(built.ids[i]))
-      left.loads.push_back({index[built.ids[i]], force});
-  for (const HeldNodes& h : held)
-    for (const auto& node : h.nodes)
-      if (arrays(g).node_in_use(node.id)) left.held.push_back(index[node.id]);
-  return left;
-}
-
 CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
   CombinedForces::List forces;
   const Point a = m.gravity.a;
   if (a.z != 0) forces.push_back(std::make_shared<GravityForce>(-a.z));
   if (a.x != 0 || a.y != 0)
     forces.push_back(std::make_shared<SidewaysForce>(a.x, a.y));
-  const auto id = [&g](unsigned i) { return g.node(i).id(); };
-  if (auto ways = ways_of(mesh, g, id); !ways.empty())
+  std::vector<unsigned> ids(g.num_nodes());
+  for (Node n : g.nodes()) ids[n.index()] = n.id();
+  if (auto ways = ways_of(mesh, ids, g); !ways.empty())
     forces.push_back(std::make_shared<OneWaySprings>(std::move(ways)));
   else
     forces.push_back(std::make_shared<MassSpringForce>());
@@ -425,7 +363,7 @@ CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
                        "removes nodes, and what became of the loads of the net "
                        "on them is not known, expected one of both");
     std::vector<Point> load(arrays(g).node_slots());
-    for (const auto& [i, force] : mesh.loads) load[id(i)] += force;
+    for (const auto& [i, force] : mesh.loads) load[ids[i]] += force;
     forces.push_back(std::make_shared<LoadForce>(std::move(load)));
   }
   return CombinedForces(std::move(forces));

@@ -23,6 +23,11 @@ struct BuiltMesh {
   std::vector<unsigned> ids;
 };
 
+/** How the springs of @a g act, by edge id, as @a net lists them; empty if all
+ * pull and push.  @param ids of its nodes   O(springs) */
+std::vector<Acts> ways_of(const Net& net, const std::vector<unsigned>& ids,
+                          const Cloth& g);
+
 /** The quads of the mesh whose four nodes and four sides @a g still has, in
  * the order of the mesh.  @pre @a g was built from @a built  O(quads) */
 std::vector<Quad> quads_left(const Cloth& g, const BuiltMesh& built);
