@@ -1,5 +1,5 @@
-// What is left of a mesh while it is simulated: the functions of Compose.hpp
-// that read a cloth that was built.
+// The part of Compose.hpp that reads a cloth that was built: its mesh as it is
+// now, without what was torn.
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/OneWaySprings.hpp"
 #include "lab/scenes/Compose.hpp"
