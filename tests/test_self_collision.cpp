@@ -281,11 +281,8 @@ class SelfCollisionRun : public ::testing::Test {
   static constexpr double dt = 0.002;
   Cloth g;
   Verlet method;
-  int touched = 0, most_rounds = 0;  // steps in which it had to do something
+  int touched = 0;  // steps in which it had to do something
 
-  double energy() const {
-    return kinetic_energy(g) + gravitational_energy(g) + elastic_energy(g);
-  }
   void run(
       int steps, double thickness, const SelfCollision& c,
       const std::function<void(int)>& after = [](int) {}) {
@@ -294,28 +291,10 @@ class SelfCollisionRun : public ::testing::Test {
       method(g, k * dt, dt, force, c);
       ASSERT_GE(nearest_of_all(g), thickness) << "step " << k;
       touched += c.rounds() > 1;
-      most_rounds = std::max(most_rounds, c.rounds());
       after(k);
     }
   }
 };
-
-TEST_F(SelfCollisionRun, TwoSheetsFallOnEachOtherOnAFloor) {
-  add_sheet(g, 6, Point(0, 0, 0.1), 20);
-  add_sheet(g, 6, Point(0.13, 0.07, 0.35), 20);
-  const double start = energy();
-  const SelfCollision c(0.17, 0.3,
-                        make_combined_constraints(PlaneConstraint(0)));
-  run(600, 0.17, c, [&](int) { ASSERT_LT(energy(), start + 1e-9); });
-  EXPECT_GT(touched, 300);
-  EXPECT_LT(most_rounds, 20);
-  double lower = 0, upper = 0;
-  for (unsigned i = 0; i < 36; ++i) {
-    lower += g.node(i).position().z / 36;
-    upper += g.node(36 + i).position().z / 36;
-  }
-  EXPECT_GT(upper, lower + 0.05);
-}
 
 // Sheets of pieces that tear at a ball and by strain, from pins, one of which
 // moves; and the test removes some more.
