@@ -4,14 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "lab/charts/Problem.hpp"
 #include "lab/fast/Energy.hpp"
-#include "lab/fast/Sweep.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/methods/Splitting.hpp"
-#include "lab/methods/Xpbd.hpp"
 #include "lab/stepping/Scene.hpp"
 #include "tests/Says.hpp"
 
@@ -29,12 +26,6 @@ Model sheet(unsigned side, std::string_view method, double dt) {
   return m;
 }
 Pin pin_at_x(double x, Motion motion = {}) { return {x, {}, {}, {}, motion}; }
-Model pulled_sheet(unsigned side, const char* method, double dt) {
-  Model m = sheet(side, method, dt);
-  m.gravity = grav;
-  m.pins = {pin_at_x(0), pin_at_x(1, {Point(4, 0, 0), 0.2})};
-  return m;
-}
 /** Energy that did not come from its start nor from what moves it [J]. */
 double gain(const Scene& s) {
   return energies(s.cloth(), s.model().gravity).total() - s.flow().work +
@@ -118,21 +109,6 @@ TEST(Work, OfAnObstacleOnHeldNodesIsNone) {
   }
 }
 
-// A ball pushes: no energy comes from nothing, and none is left out.
-TEST(Work, OfABallBoundsTheEnergyOfTheCloth) {
-  Model m = sheet(12, "verlet", 0.0005);
-  m.pins = {pin_at_x(0), pin_at_x(1)};
-  Solid ball;
-  ball.ball = {Point(0.5, 0.5, -0.31), 0.3};
-  ball.motion.velocity = Point(0, 0, 1);
-  m.spheres = {ball};
-  Scene s(m);
-  ASSERT_TRUE(s.run_to(0.3));
-  EXPECT_GT(s.flow().work, 1);
-  EXPECT_LT(gain(s), 0.02 * s.flow().work);
-  EXPECT_GT(gain(s), -0.3 * s.flow().work);  // lost by inelastic impacts
-}
-
 // What hangs below 0 takes negative energy with it when it is torn away.
 TEST(Flow, CountsTheEnergyOfNodesThatAreRemoved) {
   for (bool by_call : {false, true}) {
@@ -168,19 +144,6 @@ std::string failure_of(const Model& m) {
   Scene s(m);
   s.run_to(m.t_end);
   return text_of(s.failure());
-}
-
-TEST(Guard, LetsPassWhatGetsItsEnergyFromWhatMoves) {
-  Model hit = sheet(20, "verlet", 0.0001);
-  hit.gravity = grav;
-  hit.sheets[0].at = Point(0, 0, 0.01);
-  hit.planes = {{.at = Point(), .motion = {Point(0, 0, 10)}}};
-  hit.t_end = 0.2;
-  EXPECT_EQ(failure_of(hit), "");
-
-  Model pulled = pulled_sheet(20, "verlet", 0.0005);
-  pulled.t_end = 0.4;
-  EXPECT_EQ(failure_of(pulled), "");
 }
 
 TEST(Guard, LetsPassStrongGravityAndSmallSheets) {
@@ -223,30 +186,6 @@ TEST(Guard, TellsAnOscillationFromDivergence) {
   EXPECT_LT(looks(1.02), 50);
 }
 
-// Who looks at a run does not change what comes out of it.
-TEST(Guard, JudgesTheSameWhoeverLooks) {
-  Model slow = sheet(8, "implicit-euler", 0.5);
-  slow.gravity = grav;
-  slow.pins = {{0, 0, {}, {}, {}}, {1, 0, {}, {}, {}}};
-  slow.t_end = 10;
-  Model fails = sheet(8, "symplectic-euler", 0.012);
-  fails.gravity = grav;
-  fails.pins = slow.pins;
-  fails.t_end = 1;
-  for (const Model& m : {slow, fails}) {
-    Scene alone(m), seen(m);
-    EXPECT_EQ(alone.run_to(m.t_end),
-              seen.run_to(m.t_end, [&] { seen.check(); }));
-    EXPECT_EQ(text_of(alone.failure()), text_of(seen.failure()));
-    EXPECT_EQ(alone.steps(), seen.steps());
-    for (unsigned i = 0; i < alone.cloth().num_nodes(); ++i)
-      ASSERT_EQ(alone.cloth().node(i).position(),
-                seen.cloth().node(i).position());
-  }
-  EXPECT_EQ(failure_of(slow), "");
-  EXPECT_NE(failure_of(fails), "");
-}
-
 TEST(Guard, StopsWhatHasAnEnergyThatIsNotFinite) {
   Model m = sheet(5, "verlet", 0.001);
   m.gravity = 1e300;
@@ -274,32 +213,6 @@ TEST(End, IsReachedToRoundOffWhateverTheStep) {
     EXPECT_EQ(s.steps(), steps) << t_end << ' ' << dt;
     EXPECT_TRUE(s.run_to(t_end + 1.5 * dt));  // and goes on from there
     EXPECT_EQ(s.steps(), steps + 2);
-  }
-}
-
-TEST(End, IsReachedByAStepThatIsChosen) {
-  for (StepRule rule : {StepRule::safe, StepRule::sharp}) {
-    Model m = pulled_sheet(6, "verlet", 0);
-    m.step.rule = rule;
-    Scene s(m);
-    double last = 0;
-    EXPECT_TRUE(s.run_to(0.25, [&] {
-      EXPECT_GT(s.time(), last);
-      last = s.time();
-    }));
-    EXPECT_EQ(s.time(), 0.25);
-  }
-}
-
-// A mass falls for t_end: 1/2 g t^2, whatever the last steps are.
-TEST(End, OfAFreeFallIsExact) {
-  for (const MethodEntry& method : methods) {
-    if (method.info.order < 2) continue;
-    Model m = sheet(2, method.info.name, 0.03);
-    m.gravity = 10;
-    Scene s(m);
-    ASSERT_TRUE(s.run_to(0.5));
-    EXPECT_NEAR(center_of_mass(s.cloth()).z, -1.25, 1e-6) << method.info.name;
   }
 }
 
