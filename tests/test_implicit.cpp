@@ -2,7 +2,6 @@
 // equations, and where others fail.
 #include <gtest/gtest.h>
 
-#include "lab/fast/GraphArrays.hpp"
 #include "lab/methods/ImplicitMethods.hpp"
 #include "lab/methods/Splitting.hpp"
 #include "lab/methods/Xpbd.hpp"
@@ -65,29 +64,6 @@ TYPED_TEST(Implicit, KeepsMomentumWithoutPinsAndGravity) {
     method(s.g, n * 0.005, 0.005, MassSpringForce());
   EXPECT_LT(norm(momentum(s.g) - before), 5e-8);  // implicit Euler's 1e-8
   EXPECT_GT(elastic_energy(s.g), 1e-4);           // it did move
-}
-
-// A node vanishes in each step, and another one between two steps.
-TYPED_TEST(Implicit, GoesOnWhenNodesAreRemoved) {
-  PinnedSheet s(6);
-  auto cut =
-      make_combined_constraints(PinConstraint(s.g), [](Cloth& g, double) {
-        if (g.num_nodes() > 3) g.remove_node(g.node(g.num_nodes() / 2));
-      });
-  TypeParam method;
-  for (int n = 0; n < 40; ++n) {
-    method(s.g, n * 0.01, 0.01, s.force, cut);
-    if (n == 5) s.g.remove_node(s.g.node(7));
-    if (n == 10) s.g.add_edge(s.g.node(3), s.g.add_node(Point(2, 2, 0)));
-    s.g.check_invariants();
-    ASSERT_TRUE(std::isfinite(kinetic_energy(s.g))) << "step " << n;
-  }
-  EXPECT_EQ(s.g.num_nodes(), 3u);
-  for (unsigned i = 0; i < arrays(s.g).node_slots(); ++i)
-    if (!arrays(s.g).node_in_use(i)) {
-      EXPECT_EQ(norm(arrays(s.g).positions()[i]), 0);
-      EXPECT_EQ(norm(arrays(s.g).node_values()[i].vel), 0);
-    }
 }
 
 // The constraint sees the end of the step, once.
