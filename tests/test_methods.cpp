@@ -14,7 +14,6 @@
 #include "tests/Allocations.hpp"
 #include "tests/Momentum.hpp"
 #include "tests/Says.hpp"
-#include "tests/SweptForces.hpp"
 #include "tests/TestFolder.hpp"
 
 using namespace lab;
@@ -51,20 +50,6 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryMethod, ::testing::ValuesIn(methods),
                          [](const auto& m) {
                            return test_name(m.param.info.name);
                          });
-
-TEST_P(EveryMethod, MovesNothingThatIsHeld) {
-  Cloth g;
-  build_cloth(g, grid_points(5), grid_quads(5), MeshSprings::diagonals);
-  PinConstraint pin(g);
-  auto force = make_combined_force(GravityForce(), MassSpringForce());
-  auto method = GetParam().make();
-  for (int n = 0; n < 20; ++n) (*method)(g, 0.001 * n, 0.001, force, pin);
-  for (unsigned i : {0u, 20u}) {
-    EXPECT_EQ(g.node(i).position(), grid_points(5)[i]);
-    EXPECT_EQ(g.node(i).value().vel, Point());
-  }
-  EXPECT_LT(g.node(12).position().z, -1e-4);
-}
 
 TEST_P(EveryMethod, TearsWithASoundGraph) {
   Cloth g;
@@ -295,25 +280,6 @@ TEST(Energy, DoesNotDriftIn200000StepsOfASymplecticMethod) {
 
 // ---------------------------------------------------------------------- Verlet
 
-TEST(Verlet, IsSymplecticEulerWithHalfAKickAtTheStart) {
-  Cloth a, b;
-  shake(a);
-  shake(b);
-  auto force = make_combined_force(GravityForce(), MassSpringForce());
-  const double dt = 0.004;
-  const auto f = swept_forces(b, force);
-  for (Node n : b.nodes())
-    n.value().vel += (dt / 2 / n.value().mass) * f[n.id()];
-  Verlet verlet;
-  SymplecticEuler euler;
-  for (int k = 0; k < 200; ++k) {
-    verlet(a, k * dt, dt, force);
-    euler(b, k * dt, dt, force);
-    for (unsigned i = 0; i < 25; ++i)
-      ASSERT_LT(norm(a.node(i).position() - b.node(i).position()), 1e-12);
-  }
-}
-
 // From (y, 0) it takes exactly y_n = y cos(n q), q = 2 asin(h w/2).
 TEST(Verlet, HasItsNumericalFrequency) {
   const double h = 0.4;
@@ -440,55 +406,6 @@ TEST(Rkn64, SaysWhenNoStepMeetsTheTolerance) {
 }
 
 // ------------------------------------------------- Problems with known answers
-
-// The discrete elastic catenary: T_i = sqrt(H^2 + V_i^2), one root on H.
-TEST(Problem, CatenaryComesToRestWhereStaticsSays) {
-  const int n = 12;  // springs
-  const double K = 60, L = 0.1, m = 0.05, width = 1;
-  Cloth g;
-  std::vector<Node> node;
-  for (int i = 0; i <= n; ++i)
-    node.push_back(g.add_node(Point(width * i / n, 0, 0), {Point(), m}));
-  for (int i = 0; i < n; ++i) g.add_edge(node[i], node[i + 1], {K, L});
-  PinConstraint pin(std::vector<Node>{node[0], node[n]});
-  auto force = make_combined_force(GravityForce(), MassSpringForce(),
-                                   DampingForce(0.15));
-  Verlet method;
-  for (int k = 0; k < 6000; ++k) method(g, 0.01 * k, 0.01, force, pin);
-
-  // From the left end: spring i carries V_i = m g ((n - 1)/2 - i) downwards.
-  auto place = [&](double H, int springs) {
-    Point p;
-    for (int i = 0; i < springs; ++i) {
-      double V = m * grav * ((n - 1) / 2.0 - i), T = std::hypot(H, V);
-      p += (L + T / K) / T * Point(H, 0, -V);
-    }
-    return p;
-  };
-  double low = 1e-9, high = 100;
-  for (int k = 0; k < 200; ++k) {
-    double H = (low + high) / 2;
-    (place(H, n).x < width ? low : high) = H;
-  }
-  EXPECT_LT(place(low, n / 2).z, -0.2);
-  for (int i = 0; i <= n; ++i)
-    EXPECT_LT(norm(node[i].position() - place(low, i)), 1e-9);
-}
-
-// Two masses m at distance r: Omega^2 = 2 K (r - L)/(m r).
-TEST(Problem, PairRotatesRigidly) {
-  const double K = 100, L = 1, m = 0.5, r = 1.2;
-  const double omega = std::sqrt(2 * K * (r - L) / (m * r));
-  Cloth g;
-  Node a = g.add_node(Point(r / 2, 0, 0), {Point(0, omega * r / 2, 0), m});
-  Node b = g.add_node(Point(-r / 2, 0, 0), {Point(0, -omega * r / 2, 0), m});
-  g.add_edge(a, b, {K, L});
-  Pefrl method;
-  for (int k = 0; k < 1000; ++k) method(g, 0.001 * k, 0.001, MassSpringForce());
-  Point exact = r / 2 * Point(std::cos(omega), std::sin(omega), 0);
-  EXPECT_LT(norm(a.position() - exact), 1e-8);
-  EXPECT_LT(norm(b.position() + exact), 1e-8);
-}
 
 // A membrane: the whole rim pinned, stretched by s: w^2 = 4 T/(m s L)
 // [sin^2(j pi/(2(n-1))) + sin^2(k pi/(2(n-1)))], T = K L (s - 1).
