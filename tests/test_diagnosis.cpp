@@ -57,13 +57,10 @@ const std::string corners = "--pin 'x 0 y 0' --pin 'x 1 y 0' ";
 const std::vector<Failing> failing = {
     // Beyond the limit of the flat cloth
     {"step", "symplectic-euler", 1.3, 1, cloth + corners, Cause::step},
-    {"step", "verlet", 1.3, 1, cloth + corners, Cause::step},
-    {"step", "rk4", 1.3, 1, cloth + corners, Cause::step},
     {"step", "srkn11b", 1.3, 1, cloth + corners, Cause::step},
     // Beyond the limit once it hangs
     {"sharp", "symplectic-euler", 1.1, 3, net + corners, Cause::step},
     {"sharp", "verlet", 1.1, 3, net + corners, Cause::step},
-    {"sharp", "verlet", 1.05, 5, net + "--pin 'x 0 y 0'", Cause::step},
     {"sharp", "rk4", 1.6, 1, net + "--pin 'x 0'", Cause::step},
     // Drag as a force
     {"drag", "symplectic-euler", 1.3, 1, cloth + corners + "--damping 3",
@@ -73,25 +70,17 @@ const std::vector<Failing> failing = {
     {"drag", "rk4", 1.3, 1, cloth + corners + "--damping 10", Cause::drag},
     // No stable step
     {"no step", "forward-euler", 0.1, 2, net + corners, Cause::no_step},
-    {"no step", "forward-euler", 0.3, 1,
-     cloth + "--plane 'at 0 0 -0.2 normal 0.3 0 1'", Cause::no_step},
     // Buckling that nothing damps
     {"midpoint", "implicit-midpoint", 10, 2, cloth + corners, Cause::waves},
-    {"midpoint", "implicit-midpoint", 5, 1,
-     "--sheet 'nodes 8 8 velocity 3 0 10' --pin 'x 0'", Cause::waves},
     // Across a flat cloth one linear solve sees no stiffness
     {"flat", "implicit-euler", 82, 1.2, "--sheet 'nodes 12 12' " + corners,
      Cause::flat},
     // Too few substeps
     {"xpbd", "xpbd", 150, 0.5,
      "--sheet 'nodes 12 12' --stiffness 1e4 " + corners, Cause::rounds},
-    {"xpbd", "xpbd", 800, 0.1,
-     "--sheet 'nodes 12 12' --stiffness 1e6 " + corners, Cause::rounds},
     // Large motion, within the limit of small oscillations
     {"large", "verlet", 0.95, 5,
      "--sheet 'nodes 7 9 velocity 5 0 10' --pin 'x 0'", Cause::nonlinear},
-    {"large", "verlet", 0.95, 20, net + "--stiffness 10 " + corners,
-     Cause::nonlinear},
     {"large", "symplectic-euler", 0.95, 20, net + "--stiffness 10 " + corners,
      Cause::nonlinear},
     // What moves is too fast
@@ -100,9 +89,6 @@ const std::vector<Failing> failing = {
      Cause::nonlinear},
     {"moving", "verlet", 0.9, 1,
      cloth + "--pin 'x 0' --sphere 'at 0.5 0.5 -1 radius 0.3 velocity 0 0 30'",
-     Cause::nonlinear},
-    {"moving", "srkn11b", 0.9, 2,
-     cloth + "--pin 'x 0' --pin 'x 1 velocity -20 0 0 until 0.08'",
      Cause::nonlinear},
     // Light nodes, stiff edges
     {"masses", "verlet", 5, 1,
@@ -130,10 +116,6 @@ const std::vector<Failing> failing = {
      Cause::waves},
     // Weight that stretches springs by many times their length
     {"gravity", "verlet", 0.95, 10, net + corners + "--gravity 100",
-     Cause::nonlinear},
-    {"gravity", "verlet", 0.95, 10, cloth + "--pin 'x 0' --gravity 1e3",
-     Cause::nonlinear},
-    {"gravity", "srkn11b", 0.95, 5, cloth + "--pin 'x 0' --gravity 1e3",
      Cause::nonlinear},
     {"gravity", "rk4", 1.2, 5, cloth + "--pin 'x 0' --gravity 1e3",
      Cause::step},
