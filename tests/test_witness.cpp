@@ -142,6 +142,20 @@ TEST(Witness, VouchesForForcesAtRestByEveryMethod) {
   }
 }
 
+// The energy of a sheet that the wind blows comes from no start, no gravity and
+// no pin.
+TEST(Guard, LetsTheWindBlow) {
+  Model m = square(3, 1);
+  m.pins = {Pin{0, {}, {}, {}, {}}};
+  m.damping = 0.05, m.gravity = 0;
+  m.wind = Wind{Point(0, 0, 5)};
+  for (const char* method : {"symplectic-euler", "verlet", "tr-bdf2"})
+    EXPECT_TRUE(verdict(m, method, 0.001).fine()) << method;
+  m.step.rule = StepRule::safe, m.method = find_method("verlet");
+  Scene scene(m);
+  EXPECT_TRUE(scene.run_to(m.t_end)) << text_of(scene.failure());
+}
+
 TEST(Witness, ForgetsWhatWasBeforeAChange) {
   Model m = hanging(7, 1);
   m.method = find_method("verlet"), m.step = {.dt = 0.001};
