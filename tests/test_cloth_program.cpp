@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <set>
 
-#include "CME212/Mesh.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/MeshFile.hpp"
 #include "tests/ClothProgram.hpp"
@@ -64,25 +62,6 @@ TEST_F(ClothProgram, WritesEnergiesThatAddUp) {
   EXPECT_DOUBLE_EQ(table[1][0], 0.007);
   EXPECT_DOUBLE_EQ(table.back()[0], 1);
   EXPECT_LT(table.back()[7], -0.05);
-}
-
-// In memory this mesh gets another order: lab/fast/OrderedCloth.hpp.
-TEST_F(ClothProgram, WritesPositionsInTheOrderInWhichTheyWereRead) {
-  const unsigned side = 80, n = side * side;
-  auto number = [](unsigned i) { return i * 2467 % n; };  // any order
-  std::vector<Point> points(n);
-  std::string nodes, tets;
-  const std::vector<Point> rows_of_points = grid_points(side);
-  for (unsigned i = 0; i < n; ++i) points[number(i)] = rows_of_points[i];
-  for (const Point& p : points)
-    for (const double& a : p)
-      nodes += CME212::to_text(a) + (&a == &p.z ? "\n" : " ");
-  for (const Quad& q : grid_quads(side))
-    for (const unsigned& i : q)
-      tets += std::to_string(number(i)) + (&i == &q[3] ? "\n" : " ");
-  success(file("in.nodes", nodes) + " " + file("in.tets", tets) +
-          " --headless --t-end 0 --out " + path("out.nodes"));
-  EXPECT_EQ(parse_nodes(contents(dir / "out.nodes"), "out").points, points);
 }
 
 TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
