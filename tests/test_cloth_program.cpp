@@ -246,7 +246,7 @@ TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
       "with G in (0, 1], the energy gain tolerated, as auto:0.02\n");
 }
 
-// test_cloth_restart runs each of them.
+// ChoosesItsStep runs each of them.
 TEST_F(ClothProgram, ListsEveryMethod) {
   Result list = success("--list-methods");
   EXPECT_TRUE(has(list.out, "60 frames a second, take verlet"));
