@@ -86,15 +86,6 @@ class AdviceOfKind : public ClothProgram {
   }
 };
 
-TEST_F(AdviceOfKind, FlyingSheet) {
-  Model m = lying(0.3, 1e-3);
-  m.sheets[0].velocity = Point(1, 0, 2);
-  m.planes = {read_plane("at 0 0 -2")};
-  const Advice a = holds(m);
-  EXPECT_TRUE(a.model.planes.empty());
-  EXPECT_LE(mesh_of(a.model).points.size(), 36u);
-}
-
 // Two steps of implicit midpoint would do, but err in energy by more than
 // ./cloth accepts.
 TEST_F(AdviceOfKind, ThrownSheetWithDrag) {

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <set>
 
-#include "CME212/Mesh.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/MeshFile.hpp"
 #include "tests/ClothProgram.hpp"
@@ -66,25 +64,6 @@ TEST_F(ClothProgram, WritesEnergiesThatAddUp) {
   EXPECT_LT(table.back()[7], -0.05);
 }
 
-// In memory this mesh gets another order: lab/fast/OrderedCloth.hpp.
-TEST_F(ClothProgram, WritesPositionsInTheOrderInWhichTheyWereRead) {
-  const unsigned side = 80, n = side * side;
-  auto number = [](unsigned i) { return i * 2467 % n; };  // any order
-  std::vector<Point> points(n);
-  std::string nodes, tets;
-  const std::vector<Point> rows_of_points = grid_points(side);
-  for (unsigned i = 0; i < n; ++i) points[number(i)] = rows_of_points[i];
-  for (const Point& p : points)
-    for (const double& a : p)
-      nodes += CME212::to_text(a) + (&a == &p.z ? "\n" : " ");
-  for (const Quad& q : grid_quads(side))
-    for (const unsigned& i : q)
-      tets += std::to_string(number(i)) + (&i == &q[3] ? "\n" : " ");
-  success(file("in.nodes", nodes) + " " + file("in.tets", tets) +
-          " --headless --t-end 0 --out " + path("out.nodes"));
-  EXPECT_EQ(parse_nodes(contents(dir / "out.nodes"), "out").points, points);
-}
-
 TEST_F(ClothProgram, StopsWhenItDivergesAndLeavesTheLastGoodState) {
   Result r = run(grid3 + "--headless --every 1 --csv " + path("e.csv") +
                  " --out " + path("end.nodes"));
@@ -134,10 +113,15 @@ TEST_F(ClothProgram, SaysCauseCureAndPlaceIn80Columns) {
     }
     return lines;
   };
-  for (const std::string name : {"below-the-limit", "drag", "forward-euler",
-                                 "midpoint", "path", "step", "xpbd"}) {
-    const Result r = folder.run(program + "--headless --config " +
-                                "data/scenes/failures/" + name + ".toml");
+  for (const auto& entry : fs::directory_iterator("data/scenes/failures")) {
+    const std::string name = entry.path().stem().string();
+    const Result r =
+        folder.run(program + "--headless --config " + entry.path().string());
+    if (name == "tunnel") {
+      EXPECT_EQ(r.status, 0);
+      EXPECT_TRUE(has(joined(r.err), "would have tunnelled"));
+      continue;
+    }
     EXPECT_EQ(r.status, 3);
     EXPECT_LE(lines_of(r), 18) << r.err;
     EXPECT_TRUE(has('\n' + r.err, "\ncloth: diverged: ")) << name;
@@ -245,47 +229,6 @@ TEST_F(ClothProgram, ChoosesItsStep) {
   EXPECT_EQ(run(grid0 + "--headless --dt auto --stiffness 0").status, 2);
 }
 
-// Steps are taken back on the way: the table has none of them.
-TEST_F(ClothProgram, WritesNoRowOfAStepThatWasTakenBack) {
-  Result r = success(grid0 +
-                     "--headless --dt auto --damping 0.04 --every 1 "
-                     "--method verlet --t-end 5 --csv " +
-                     path("e.csv"));
-  const std::string lengthened = " times, lengthened ";
-  const double times = number(r.out, lengthened, " times, ");
-  EXPECT_GT(times, 3);
-  EXPECT_GT(number(r.out, lengthened + std::to_string(int(times)) + " times, ",
-                   " steps taken back"),
-            0);
-  const auto table = rows(dir / "e.csv");
-  EXPECT_EQ(double(table.size()), number(r.out, "\ntear: ", " steps to") + 1);
-  for (std::size_t k = 1; k < table.size(); ++k)
-    ASSERT_GT(table[k][0], table[k - 1][0]);
-  EXPECT_EQ(table.back()[0], 5);
-}
-
-TEST_F(ClothProgram, RefusesBadInputWithFileAndLineAndWritesNothing) {
-  auto bad = [this](const std::string& nodes, const std::string& tets,
-                    const std::string& message) {
-    const std::string said = refusal(nodes + " " + tets + " --headless --csv " +
-                                     path("c") + " --out " + path("o"));
-    EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
-    EXPECT_TRUE(begins(said, message));
-    for (const std::string& name : files())
-      EXPECT_TRUE(name == "n" || name == "t" || name == "bad") << name;
-  };
-  std::string nodes = file("n", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
-  std::string tets = file("t", "0 1 2 3\n");
-  auto points = [this](const char* text) { return file("bad", text); };
-  std::string at = path("bad") + ":";
-  bad(dir.string(), tets, dir.string() + ": a directory, expected");
-  bad(points("0 0 0\n0 x 0\n"), tets, at + "2: 'x' is not a number");
-  bad(nodes, path("none"), path("none") + ": can't be opened");
-  bad(nodes, points("#\n0 1 2 -3\n"), at + "2: there is no node -3");
-  bad(tets, nodes, tets + ":1: 4 values in the line");
-  EXPECT_EQ(run(nodes + " " + tets + " --headless").status, 0);
-}
-
 TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
   for (const char* options :
        {"--dt x", "--t-end inf", "--damping -1", "--gravity nan", "--every 0",
@@ -303,7 +246,7 @@ TEST_F(ClothProgram, RefusesOptionsThatCantBe) {
       "with G in (0, 1], the energy gain tolerated, as auto:0.02\n");
 }
 
-// test_cloth_restart runs each of them.
+// ChoosesItsStep runs each of them.
 TEST_F(ClothProgram, ListsEveryMethod) {
   Result list = success("--list-methods");
   EXPECT_TRUE(has(list.out, "60 frames a second, take verlet"));

@@ -39,29 +39,6 @@ TEST_F(ClothProgram, RunsEveryShippedScene) {
   EXPECT_GE(count, 9 + 5);
 }
 
-TEST_F(ClothProgram, EveryShippedFailureFails) {
-  for (const auto& entry : fs::directory_iterator("data/scenes/failures")) {
-    const Result r = run("--headless --config " + entry.path().string());
-    const bool tunnels = entry.path().stem() == "tunnel";
-    EXPECT_EQ(r.status, tunnels ? 0 : 3) << entry.path();
-    EXPECT_TRUE(has(r.err, tunnels ? "would have tunnelled" : "diverged: "))
-        << entry.path();
-  }
-}
-
-TEST_F(ClothProgram, MakesASceneOfWhatIsNamedAndNothingElse) {
-  // Without a pin it falls, and nothing is below.
-  Result r =
-      run("--sheet 'nodes 9 9' --headless --t-end 1 --csv " + path("e.csv"));
-  EXPECT_TRUE(begins(r.out, "81 nodes, 272 edges\n"));
-  EXPECT_TRUE(has(r.out, "scene: 1000 steps"));
-  EXPECT_NEAR(rows(dir / "e.csv").back()[7], -9.81 / 2, 0.01);
-  // The same files in a stage of the assignment, and as a scene.
-  EXPECT_TRUE(has(run(grid0 + "--headless --t-end 0").out, "\ntear: "));
-  EXPECT_TRUE(
-      has(run(grid0 + "--headless --t-end 0 --density 1").out, "scene: "));
-}
-
 TEST_F(ClothProgram, TheCommandLineWinsOverTheFile) {
   std::string scene = file("scene.toml",
                            "sheet = \"nodes 5 5\"\npin = \"x 0\"\n"
@@ -90,24 +67,6 @@ TEST_F(ClothProgram, TheCommandLineWinsOverTheFile) {
           "scene: 20 steps"));
 }
 
-TEST_F(ClothProgram, SaysWhereASceneFileIsWrong) {
-  auto complaint = [this](const std::string& line) {
-    const std::string name =
-        file("bad.toml", "# a scene\nsheet = \"nodes 5 5\"\n" + line + "\n");
-    const std::string said =
-        refusal("--config " + name + " --headless --out " + path("o"));
-    EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
-    EXPECT_FALSE(fs::exists(dir / "o"));
-    EXPECT_TRUE(begins(said, name + ":3: "));
-    return said.substr(std::min(said.size(), name.size() + 4));
-  };
-  EXPECT_EQ(complaint("colour = 3"), "unknown key colour\n");
-  complaint("every = 0");
-  complaint("pin = [\"x 0\"");
-  const std::string none = path("none.toml");
-  EXPECT_TRUE(begins(refusal("--config " + none), none + ": can't be opened"));
-}
-
 TEST_F(ClothProgram, RefusesScenesThatCantBe) {
   auto complaint = [&](const std::string& more) {
     return refusal(sheet + more);
@@ -121,21 +80,6 @@ TEST_F(ClothProgram, RefusesScenesThatCantBe) {
   EXPECT_NE(complaint("--modulus 1 --stiffness 1"), "");
   EXPECT_NE(complaint("--drag 1 --damping 1"), "");
   EXPECT_NE(complaint("--sheet"), "");
-}
-
-TEST_F(ClothProgram, AnswersWhatASceneIsAsked) {
-  const std::string sheet = "--sheet 'nodes 3 3' --headless --t-end 0 ";
-  EXPECT_TRUE(has(run(sheet).out, "\ncom: 0.5 0.5 0 m at t = 0 s\n"));
-  EXPECT_TRUE(has(run(sheet + "--measure max-stretch").out,
-                  "max-stretch: 0 at t = 0 s\n"));
-  EXPECT_EQ(run(sheet + "--quiet").out, "");
-  const std::string hanging = "--config data/scenes/hanging-sheet.toml ";
-  for (const std::string dt : {"auto", "0.0013", "0.0021"})
-    EXPECT_TRUE(has(run(hanging + "--headless --method verlet --dt " + dt).out,
-                    " m at t = 0.25 s\n"))
-        << dt;
-  EXPECT_TRUE(
-      has(run(grid0 + "--headless --t-end 0").out, "\ncom: 0.5 0.5 0 m"));
 }
 
 TEST_F(ClothProgram, AdvisesAndRunsWhatItAdvises) {

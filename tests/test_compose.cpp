@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "lab/fast/Energy.hpp"
-#include "lab/fast/ForcePlan.hpp"
 #include "lab/methods/Methods.hpp"
 #include "lab/scenes/Measure.hpp"
 #include "lab/scenes/Words.hpp"
@@ -177,29 +176,6 @@ TEST(Compose, APinHoldsNodesByPlaceOrIndex) {
 
 // ---------------------------------------------------------------- The material
 
-// Both ends of an edge have to be in the box for another K; a node counts by
-// its place at the start. Where two boxes overlap, factors multiply.
-TEST(Compose, RegionsChangeTheirNodesAndEdges) {
-  Model m = with_sheet("nodes 5 5");
-  m.regions = {
-      read_region("from 0 0 0 to 0.5 1 0 mass-factor 50 stiffness-factor 1e4"),
-      read_region("from 1 1 1 to 0.5 0.5 -1 mass-factor 2")};
-  Cloth g = built(m);
-  int stiff = 0;
-  for (Edge e : g.edges()) {
-    const bool in =
-        e.node1().position().x <= 0.5 && e.node2().position().x <= 0.5;
-    stiff += in;
-    EXPECT_EQ(e.value().K, in ? 1e6 : 100);
-  }
-  EXPECT_EQ(stiff, 3 * 4 + 2 * 5 + 2 * 8);  // of 3 x 5 nodes
-  for (Node n : g.nodes()) {
-    const Point p = n.position();
-    const double factor =
-        (p.x <= 0.5 ? 50 : 1) * (p.x >= 0.5 && p.y >= 0.5 ? 2 : 1);
-    EXPECT_NEAR(n.value().mass, factor / 25, 1e-15 * factor);
-  }
-}
 TEST(Compose, ARegionHasSomethingToChange) {
   auto complaint = [](const std::string& region) {
     Model m = with_sheet("nodes 5 5");
@@ -212,26 +188,6 @@ TEST(Compose, ARegionHasSomethingToChange) {
   EXPECT_EQ(complaint(one + "mass-factor 2"), "");
   EXPECT_EQ(complaint(one + "stiffness-factor 2"),
             "--region \"" + one + "stiffness-factor 2\" holds no edge");
-}
-
-TEST(Compose, NodesStartWithTheirVelocityUnlessTheyAreHeld) {
-  Model m = with_sheet("nodes 3 3");
-  m.sheets.push_back(read_sheet("at 0 0 1 nodes 2 2 velocity 1 2 3"));
-  m.pins = {read_pin("x 1 y 1 z 1")};
-  Cloth g = built(m);
-  for (unsigned i = 0; i < 13; ++i)
-    EXPECT_EQ(g.node(i).value().vel,
-              i < 9 || i == 12 ? Point() : Point(1, 2, 3))
-        << i;
-  // Without forces it goes on along a line.
-  m.sheets = {read_sheet("nodes 3 3 velocity 0 0 -2")};
-  m.pins.clear();
-  m.gravity = 0;
-  m.t_end = 0.5;
-  Scene scene(m);
-  ASSERT_TRUE(scene.run_to(m.t_end));
-  EXPECT_NEAR(norm(scene.cloth().node(8).position() - Point(1, 1, -1)), 0,
-              1e-12);
 }
 
 TEST(Compose, StiffnessIsModulusTimesWidthOverLength) {
@@ -325,55 +281,6 @@ TEST(Compose, WhatIsNotNamedCostsNothing) {
   m.pins = {read_pin("x 0")};
   m.planes = {Wall()};
   EXPECT_EQ(constraint_of(m, mesh_of(m), g).parts.size(), 2u);
-}
-
-TEST(Compose, DragPerAreaIsSharedByTheNodesAsTheirMassIs) {
-  Model m = with_sheet("u 2 0 0 nodes 4 5");
-  m.material.drag = 3;
-  m.material.density = 0.5;
-  Cloth g = built(m);
-  const CombinedForces force = force_of(m, mesh_of(m), g);
-  const Drag drag = ForcePlan(force).drag();
-  double all = 0;
-  for (Node n : g.nodes()) {
-    all += drag[n.id()];
-    EXPECT_NEAR(drag[n.id()] / n.value().mass, 6, 1e-13);
-  }
-  EXPECT_NEAR(all, 3 * 2, 1e-13);
-  EXPECT_NEAR(drag[g.node(0).id()], 3 * 2 / 12. / 4, 1e-15);  // a corner
-}
-
-// A sheet that falls loose has nothing to feel but its weight and its drag, by
-// v' = -g - gamma v, gamma = drag/density: as a point, by each method.
-TEST(Compose, ALooseSheetFallsAsAPointByEachMethod) {
-  Model m = with_sheet("nodes 4 3");
-  m.material.density = 0.2;
-  m.material.drag = 1;
-  m.step.dt = 0.01;
-  for (const MethodEntry& entry : methods) {
-    m.method = &entry;
-    Scene scene(m);
-    ASSERT_TRUE(scene.run_to(0.1)) << text_of(scene.failure());
-    Cloth point;
-    point.add_node(Point(), {Point(), 0.2});
-    const auto method = entry.make();
-    for (int n = 0; n < 10; ++n)
-      (*method)(point, 0.01 * n, 0.01,
-                make_combined_force(GravityForce(), MassSpringForce(),
-                                    DampingForce(1)));
-    const double z = point.node(0).position().z;
-    EXPECT_LT(z, -0.03);
-    for (Node n : scene.cloth().nodes())
-      ASSERT_NEAR(n.position().z, z, 1e-9) << entry.info.name;
-  }
-}
-
-TEST(Compose, PinsMustHoldANode) {
-  Model m = with_sheet("nodes 3 3");
-  Cloth g = built(m);
-  m.pins = {read_pin("x 0.5"), read_pin("x 0.4")};
-  EXPECT_EQ(error_of<SceneError>([&] { constraint_of(m, mesh_of(m), g); }),
-            "--pin \"x 0.4\" holds no node: the nearest is node 3 at 0.5 0 0");
 }
 
 TEST(Compose, SelfCollisionMustFitTheStart) {

@@ -124,13 +124,6 @@ TEST_F(Driver, RefusesAStepBeyondTheEndAndOneTooShort) {
   EXPECT_EQ(run(grid(0) + "0.25 0.25").status, 0);  // one step
 }
 
-TEST_F(Driver, TakesAStepAndAnEnd) {
-  const Lines said(run(grid(0) + "0.002 0.1").out);
-  ASSERT_EQ(said.lines.size(), 11u);
-  EXPECT_NEAR(said.lines.back().t, 0.1, 1e-6);
-  EXPECT_NEAR(said.lines[1].t, 0.01, 1e-6);
-}
-
 // In equal steps of at most DT, as many as that takes.
 TEST_F(Driver, EndsAtTheEndThatIsAskedFor) {
   const struct {

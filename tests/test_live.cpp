@@ -71,21 +71,6 @@ TEST(Live, ChangesNothingButWhatIsAsked) {
   run(live, 10);
 }
 
-TEST(Live, GravityAcceleratesTheCenterOfMass) {
-  Live live(loose(6));
-  live.apply("gravity 5");
-  run(live, 100);
-  EXPECT_NEAR(velocity(live.scene().cloth()).z, -0.5, 1e-13);
-  live.apply("gravity 0 0 2");
-  run(live, 100);
-  EXPECT_NEAR(velocity(live.scene().cloth()).z, -0.3, 1e-13);
-  live.apply("gravity 3 -4 0");
-  run(live, 100);
-  const Point v = velocity(live.scene().cloth());
-  EXPECT_NEAR(norm(v - Point(0.3, -0.4, -0.3)), 0, 1e-13);
-  EXPECT_EQ(live.model().gravity.size(), 5);
-}
-
 TEST(Live, DragOfEachNodeSlowsItDownByCOverM) {
   Model m = loose(5);
   m.sheets[0].velocity = Point(1, 0, 0);
@@ -107,27 +92,6 @@ TEST(Live, DragByAreaStaysByArea) {
   run(live, 500);
   for (Node n : live.scene().cloth().nodes())
     EXPECT_NEAR(n.value().vel.x, std::exp(-1), 1e-12);
-}
-
-// Rest lengths stay, so the elastic energy grows by the ratio; that is work.
-TEST(Live, StiffnessIsThatOfASceneMadeWithIt) {
-  Model m = hung(7);
-  m.regions = {{.box = {Point(0, 0, -1), Point(0.5, 1, 1)}, .stiffness = 3}};
-  Live live(m);
-  run(live, 200);
-  const Readings before = live.readings();
-  live.apply("stiffness 250");
-  const Readings after = live.readings();
-  EXPECT_NEAR(after.energy.elastic, 2.5 * before.energy.elastic, 1e-12);
-  EXPECT_NEAR(after.drift, before.drift, 1e-12);
-  EXPECT_NEAR(after.safe_limit, before.safe_limit / std::sqrt(2.5), 1e-6);
-  m.stiffness = 250;
-  Scene made(m);
-  for (Edge e : live.scene().cloth().edges()) {
-    EXPECT_EQ(e.value().K, arrays(made.cloth()).edge_values()[e.id()].K);
-    EXPECT_EQ(e.value().L, arrays(made.cloth()).edge_values()[e.id()].L);
-  }
-  run(live, 200);
 }
 
 TEST(Live, StepIsAShareOfTheLimitOfTheMethod) {
@@ -160,16 +124,6 @@ TEST(Live, AMethodThatCannotChooseItsStepTakesThePresentOne) {
   EXPECT_EQ(live.scene().dt(), dt);
   EXPECT_TRUE(live.scene().stepper().time_step().fixed());
   run(live, 3);
-}
-
-TEST(Live, EndsWithItsModel) {
-  Model m = hung(5);
-  m.t_end = 0.005;
-  Live live(m);
-  for (int k = 0; k < 5; ++k) EXPECT_EQ(live.step(), k < 4);
-  EXPECT_EQ(live.scene().time(), m.t_end);
-  EXPECT_FALSE(live.step());
-  EXPECT_EQ(live.calls(), 5);
 }
 
 TEST(Live, BeyondTheLimitItFailsAndGoesOnFromTheLastGoodState) {
@@ -420,32 +374,6 @@ TEST(Pins, HoldANodeWhereItIs) {
   run(live, 20);
   EXPECT_NE(arrays(live.scene().cloth()).positions()[n], place);
   EXPECT_TRUE(live.scene().is_pinned(id(live, 0)));
-}
-
-TEST(Pins, OfTheSceneLetGo) {
-  Model m = hung(6);
-  m.pins[1].motion = {Point(0.1, 0, 0), 0.05};  // one that moves
-  Live live(m);
-  run(live, 100);
-  live.apply(request("unpin", id(live, 0)));
-  live.apply(request("unpin", id(live, 30)));
-  EXPECT_FALSE(live.scene().is_pinned(id(live, 30)));
-  const double v = velocity(live.scene().cloth()).z;
-  run(live, 100);
-  EXPECT_NEAR(velocity(live.scene().cloth()).z - v, -0.1 * grav, 1e-12);
-  EXPECT_TRUE(live.scene().flow().loose);
-}
-
-// One that moves goes on moving when another one is let go.
-TEST(Pins, ThatMoveGoOnMoving) {
-  Model m = hung(6);
-  m.pins[1].motion.velocity = Point(0, 0, 0.5);
-  Live live(m);
-  run(live, 100);
-  live.apply(request("unpin", id(live, 0)));
-  run(live, 100);
-  const Point p = arrays(live.scene().cloth()).positions()[id(live, 30)];
-  EXPECT_NEAR(norm(p - Point(1, 0, 0.1)), 0, 1e-12);
 }
 
 // -------------------------------------------------------------------- Readings

@@ -133,31 +133,12 @@ TEST(Measure, AFloorCarriesTheWeightOfWhatRestsOnIt) {
   EXPECT_NEAR(answer_of(m, "contact-force"), grav / std::sqrt(1.04), 1e-3);
   m.pins = {read_pin("x 0")};  // they carry their nodes
   EXPECT_LT(answer_of(m, "contact-force"), 0.9 * grav);
+  EXPECT_THROW(answer_of(m, "pin-force x 0.5"), SceneError);
+  m.pins.clear();
+  EXPECT_THROW(answer_of(m, "pin-force"), SceneError);
   m.planes.clear();
   m.measure = Measure::contact_force;
   EXPECT_THROW(check_question(m), SceneError);
-}
-
-TEST(Measure, PinsCarryTheWholeWeightAtRest) {
-  // A chain, and a cloth of two densities with drag, each at rest.
-  Model chain = scene_of("v 0 0 -1 nodes 2 9", 12, 0.002);
-  chain.edges.diagonals = false, chain.damping = 0.2,
-  chain.pins = {read_pin("z 0")};
-  EXPECT_NEAR(answer_of(chain, "pin-force"), grav, 1e-6);
-  EXPECT_NEAR(answer_of(chain, "pin-force x 1"), grav / 2, 1e-6);
-  Model cloth = scene_of("nodes 7 7", 30, 0.002);
-  cloth.pins = {read_pin("x 0 y 0"), read_pin("x 1 y 0")};
-  cloth.material = {.density = 0.3, .modulus = 100, .drag = 2};
-  cloth.regions = {read_region("from 0 0 0 to 1 0.5 0 mass-factor 3")};
-  Cloth g = built(cloth);
-  EXPECT_NEAR(answer_of(cloth, "pin-force"), total_mass(g) * grav, 1e-6);
-  // Both pull up with half of the weight, and against each other.
-  const double one = answer_of(cloth, "pin-force x 0");
-  EXPECT_GT(one, total_mass(g) * grav / 2);
-  EXPECT_NEAR(one, answer_of(cloth, "pin-force x 1 y 0"), 1e-6);
-  EXPECT_THROW(answer_of(cloth, "pin-force x 0.5"), SceneError);
-  cloth.pins.clear();
-  EXPECT_THROW(answer_of(cloth, "pin-force"), SceneError);
 }
 
 /** Springs of 1 m between two rows, pulled apart at 0.5 m/s. */

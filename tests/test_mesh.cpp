@@ -372,19 +372,6 @@ TEST(Load, SaysWhyAFileCantBeRead) {
             "/: a directory, expected a file of quads");
 }
 
-TEST(Grid, HasXOutsideAndYInsideOverTheUnitSquare) {
-  auto p = grid_points(5);
-  ASSERT_EQ(p.size(), 25u);
-  EXPECT_EQ(p[0], Point(0, 0, 0));
-  EXPECT_EQ(p[1], Point(0, 0.25, 0));
-  EXPECT_EQ(p[5], Point(0.25, 0, 0));
-  EXPECT_EQ(p[24], Point(1, 1, 0));
-  auto q = grid_quads(5);
-  ASSERT_EQ(q.size(), 16u);
-  EXPECT_EQ(q[0], (Quad{0, 1, 5, 6}));
-  EXPECT_EQ(q[15], (Quad{18, 19, 23, 24}));
-}
-
 // Libraries without from_chars() of a real: the C library's gives the same.
 static void same_as_from_chars(const std::string& word) {
   const char *first = word.data(), *last = first + word.size();

@@ -43,17 +43,6 @@ Model with_tear(const std::string& words) {
   return m;
 }
 
-// Those of data/scenes: ClothProgram.RunsEveryShippedScene
-TEST(Warnings, TheSceneOfTheAssignmentHasNone) {
-  for (const char* grid : {"data/grid0", "data/grid1", "data/grid2"}) {
-    Model m = assignment_scene();
-    m.nodes = grid + std::string(".nodes"),
-    m.tets = grid + std::string(".tets");
-    EXPECT_EQ(warning_of(m), "") << grid;
-  }
-  EXPECT_EQ(warning_of(sheet()), "");
-}
-
 // ------------------------------------------------------------------ The mesh
 
 TEST(Warnings, AnOpeningIsTheLargestBallBetweenTheNodes) {
