@@ -120,7 +120,7 @@ std::string GridStudy::add() {
     };
     run.trial = q_.pilots.run(run.model, on, run.work, {}, {}, look);
     if (run.trial.ok()) break;
-    if (run.factor >= 1) return "on " + on + ": " + run.trial.failure;
+    if (run.factor >= 1) return "on " + on + ": " + *run.trial.failure;
     q_.advice.grids.clear();  // it is too coarse to carry the load
   }
   ++level_;
