@@ -132,9 +132,7 @@ std::string GridStudy::add() {
     return q_.advice.share +
            ", but that is 0: expected a tolerance with its unit";
   q_.pilots.knows(so_far());
-  return grids().converges(constant.negligible * tolerance())
-             ? ""
-             : diverging(q_.scene);
+  return grids().converges(tolerance()) ? "" : diverging(q_.scene);
 }
 
 std::string GridStudy::hopeless() const {
