@@ -294,6 +294,8 @@ TEST(Advise, OfAClothAtRestIsItsRest) {
     EXPECT_TRUE(has(in_words(a), proof));
   m.t_end = 0.5;  // it still swings
   EXPECT_EQ(advise(m).at_rest, "");
+  m.from_rest = true;
+  EXPECT_TRUE(has(as_options(m), " --from-rest=true"));
 }
 
 TEST(Advise, DoesNotWarnOfItself) {

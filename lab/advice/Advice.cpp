@@ -146,8 +146,7 @@ std::string recommendation(const Advice& a) {
   if (a.model.t_end < a.t_end && !rests)
     text += "  it ends at " + number(a.model.t_end) + " s instead of " +
             number(a.t_end) + " s: after that " + name_of(a.measure) +
-            " changes by less than " + with_unit(a.tolerance / 10, a.measure) +
-            '\n';
+            " changes by less than " + with_unit(a.tolerance, a.measure) + '\n';
   auto finer = [&](const std::optional<double>& error, const char* what) {
     return (error ? with_unit(*error, a.measure) : std::string("not run")) +
            what;
@@ -196,6 +195,70 @@ std::string assessment(const Advice& a) {
          ") " + size(own.step) + '\n';
 }
 
+std::string notes(const Advice& a) {
+  std::string text;
+  if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
+  if (!a.buckles.empty()) text += "  note: " + a.buckles + '\n';
+  if (!a.impossible.empty())
+    text += "  could not be run: " + joined(a.impossible, "; ") + '\n';
+  if (!a.left_out.empty() && a.refusal.empty())
+    text += "  not run for lack of budget: " + joined(a.left_out, ", ") +
+            "; --advise-work " + CME212::two_digits(4 * a.budget) +
+            " would allow more\n";
+  return text;
+}
+
+std::string in_brackets(const Measure& measure) {
+  return *unit_of(measure) ? std::string(" [") + unit_of(measure) + ']' : "";
+}
+
+std::string table_of_parts(const Advice& a) {
+  std::vector<Row> rows = {{"part, on " + std::to_string(a.tried_on) + " nodes",
+                            "change of " + name_of(a.measure) + " without it" +
+                                in_brackets(a.measure),
+                            "springs saved", "step can grow", ""}};
+  for (const PartReport& p : a.parts)
+    rows.push_back({p.part, p.tried ? number(p.change) : "not tried",
+                    CME212::short_text(p.springs),
+                    p.step > 1.01 ? number(p.step) + " times" : "",
+                    !a.refusal.empty() ? ""
+                    : p.needed         ? "kept"
+                                       : "dropped"});
+  return in_columns(rows);
+}
+
+std::string table_of_grids(const Advice& a) {
+  std::vector<Row> rows = {{a.from_files ? "step [s]" : "grid of nodes",
+                            "estimated error" + in_brackets(a.measure),
+                            "force evaluations", "time [s]", ""}};
+  for (std::size_t k = 0; k < a.grids.size(); ++k) {
+    const GridReport& g = a.grids[k];
+    rows.push_back({a.from_files ? number(g.trial.dt) : std::to_string(g.nodes),
+                    a.grids.size() < 3 ? "unknown" : number(g.error),
+                    count(g.evaluations), number(g.trial.seconds), ""});
+  }
+  if (a.refusal.empty())
+    rows.push_back(
+        {a.from_files ? number(a.model.step.dt) : std::to_string(nodes_of(a)),
+         number(a.error), count(a.evaluations), number(a.seconds), "advised"});
+  return in_columns(rows);
+}
+
+/** Of the last choices. */
+std::string table_of_choices(const Advice& a) {
+  std::vector<Row> rows = {{"nodes tried", "method", "dt [s]",
+                            "error" + in_brackets(a.measure),
+                            "spring evaluations"}};
+  const std::size_t all = a.choices.size();
+  for (std::size_t k = all - std::min<std::size_t>(all, 12); k < all; ++k) {
+    const AdvisedRun& c = a.choices[k];
+    rows.push_back(
+        {std::to_string(nodes_of(c)), std::string(c.model.method->info.name),
+         number(c.model.step.dt), number(c.error), CME212::two_digits(c.work)});
+  }
+  return in_columns(rows);
+}
+
 /** Words of a part that is all default, as nobody would type ''. */
 std::string named_default(const std::string& key) {
   return key == "sheet"                     ? "'nodes 20 20'"
@@ -209,26 +272,26 @@ std::string named_default(const std::string& key) {
 std::string as_options(const Model& m) {
   Model copy = m, none;
   const auto all = fields_of(copy), usual = fields_of(none);
+  const bool rests = m.from_rest && m.t_end == 0;  // there is no time
   std::string text;
   for (const Field& f : all) {
     const auto values = f.values();
-    const bool replaced = std::ranges::any_of(all, [&](const Field& other) {
-      return other.instead_of == f.name && !other.values().empty();
-    });
+    const std::string name = f.name;
+    const bool is_flag = std::holds_alternative<bool*>(f.member),
+               replaced = std::ranges::any_of(all, [&](const Field&other) {
+                 return other.instead_of == name && !other.values().empty();
+               });
     // A run by the advised method has no use for the tolerance.
-    // At rest there is no time.
-    const bool rests = m.from_rest && m.t_end == 0;
-    if (rests && f.name == std::string("from-rest")) {
-      text += " --rest";
-      continue;
-    }
-    if (replaced || (rests && f.name == std::string("t-end")) ||
-        values == usual[std::size_t(&f - &all[0])].values() ||
-        f.name == std::string("tolerance"))
+    if (replaced || name == "tolerance" || (rests && name == "t-end") ||
+        values == usual[std::size_t(&f - &all[0])].values())
       continue;
     for (const std::string& words : values)
-      text += std::string(text.empty() ? "--" : " --") + f.name + ' ' +
-              (words.empty() ? named_default(f.name) : for_shell(words));
+      text += (text.empty() ? "--" : " --") +
+              (rests && name == "from-rest" ? "rest"
+               : is_flag                    ? name + '=' + words
+                                            : name + ' ' +
+                               (words.empty() ? named_default(name)
+                                              : for_shell(words)));
   }
   return text;
 }
@@ -238,59 +301,14 @@ std::string in_words(const Advice& a) {
     return "advice: no run is needed: " + name_of(a.measure) + " is" +
            numbers(a.answer, a.measure) + "\n  ./cloth " + as_options(a.model) +
            " --headless\n  trivial: " + a.trivial + '\n';
-  const std::string unit =
-      *unit_of(a.measure) ? std::string(" [") + unit_of(a.measure) + ']' : "";
   std::string text = a.own ? assessment(a)
                      : a.refusal.empty()
                          ? recommendation(a)
                          : "no advice: " + a.refusal + '\n' + extrapolated(a);
-  if (!a.trivial.empty()) text += "  trivial: " + a.trivial + '\n';
-  if (!a.buckles.empty()) text += "  note: " + a.buckles + '\n';
-  if (!a.impossible.empty())
-    text += "  could not be run: " + joined(a.impossible, "; ") + '\n';
-  if (!a.left_out.empty() && a.refusal.empty())
-    text += "  not run for lack of budget: " + joined(a.left_out, ", ") +
-            "; --advise-work " + CME212::two_digits(4 * a.budget) +
-            " would allow more\n";
-  std::vector<Row> rows = {
-      {"part, on " + std::to_string(a.tried_on) + " nodes",
-       "change of " + name_of(a.measure) + " without it" + unit,
-       "springs saved", "step can grow", ""}};
-  for (const PartReport& p : a.parts)
-    rows.push_back({p.part, p.tried ? number(p.change) : "not tried",
-                    CME212::short_text(p.springs),
-                    p.step > 1.01 ? number(p.step) + " times" : "",
-                    !a.refusal.empty() ? ""
-                    : p.needed         ? "kept"
-                                       : "dropped"});
-  text += in_columns(rows);
-  rows = {{a.from_files ? "step [s]" : "grid of nodes",
-           "estimated error" + unit, "force evaluations", "time [s]", ""}};
-  for (std::size_t k = 0; k < a.grids.size(); ++k) {
-    const GridReport& g = a.grids[k];
-    rows.push_back({a.from_files ? number(g.trial.dt) : std::to_string(g.nodes),
-                    a.grids.size() < 3 ? "unknown" : number(g.error),
-                    count(g.evaluations), number(g.trial.seconds), ""});
-  }
-  if (a.refusal.empty())
-    rows.push_back(
-        {a.from_files ? number(a.model.step.dt) : std::to_string(nodes_of(a)),
-         number(a.error), count(a.evaluations), number(a.seconds), "advised"});
-  text += in_columns(rows);
-  rows = {{"nodes tried", "method", "dt [s]", "error" + unit,
-           "spring evaluations"}};
-  const std::size_t most = 12;  // the last ones
-  for (std::size_t k = a.choices.size() - std::min(a.choices.size(), most);
-       k < a.choices.size(); ++k) {
-    const AdvisedRun& c = a.choices[k];
-    rows.push_back(
-        {std::to_string(nodes_of(c)), std::string(c.model.method->info.name),
-         number(c.model.step.dt), number(c.error), CME212::two_digits(c.work)});
-  }
-  text += in_columns(rows);
+  text +=
+      notes(a) + table_of_parts(a) + table_of_grids(a) + table_of_choices(a);
   if (a.perturbed > 0)
-    text += "\n" + std::to_string(a.perturbed) +
-            (a.perturbed > 1 ? " runs" : " run") +
+    text += "\n" + CME212::count_of(std::size_t(a.perturbed), "run") +
             " that should agree (start moved by 1e-6 m, or a slightly shorter "
             "step) differ by up to " +
             with_unit(a.scatter, a.measure) + '\n';

@@ -115,7 +115,7 @@ ChoiceSearch::Outcome ChoiceSearch::judge(Choice& c, double most) {
   }
   if (!holds_on_finer_grids(c)) return by_accident;
   c.scatter = perturb(c);
-  c.uncertainty += constant.of_scatter * c.scatter;
+  c.uncertainty += c.scatter;
   if (c.scatter > grids_.tolerance() / 2 ||
       !grids_.accepts(c.error, c.uncertainty))
     return by_accident;
@@ -174,10 +174,8 @@ double ChoiceSearch::perturb(const Choice& c) {
 bool ChoiceSearch::may_be_cheaper(const Choice& c, double most) const {
   if (!work_varies(c.model.method->info)) return c.work < most;
   const auto known = real_work_.find(c.model.method);
-  return known != real_work_.end()
-             ? constant.surely * std::min(1., known->second) * c.work < most
-             : constant.surely * c.work < most ||
-                   c.work < constant.little * q_.pilots.spent();
+  return known == real_work_.end() ||
+         std::min(1., known->second) * c.work < most;
 }
 
 void ChoiceSearch::try_all(const std::vector<GridStudy::Grid>& grids,
@@ -213,8 +211,7 @@ void ChoiceSearch::search() {
   // The choice found before holds if finer grids do not contradict it.
   if (found_) {
     found_->error = grids_.distance_of(found_->answer, grids_.grids().limit());
-    found_->uncertainty =
-        grids_.grids().uncertainty() + constant.of_scatter * found_->scatter;
+    found_->uncertainty = grids_.grids().uncertainty() + found_->scatter;
     if (!(found_->error <= grids_.tolerance())) found_.reset();
   }
   q_.advice.choices.clear();

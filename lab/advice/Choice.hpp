@@ -66,7 +66,7 @@ class ChoiceSearch {
    * error as that by the pilot. */
   bool may_hold(const Choice& c) const;
   /** Whether @a c may take less work than @a most. A method of varying work is
-   * tried once to know that, if this is cheap beside all pilots so far. */
+   * tried once to know that. */
   bool may_be_cheaper(const Choice& c, double most) const;
   /** Replace @a best by the cheapest choice that holds, if one is cheaper. */
   void try_all(const std::vector<GridStudy::Grid>& grids,

@@ -1,7 +1,7 @@
 #pragma once
 /** @file Constants.hpp
  * Numbers of the adviser: what each is, its unit, and in parentheses the test
- * that fails if it is doubled, where one does. */
+ * that fails if it is doubled, where one does, or without it. */
 #include <cstddef>
 
 namespace lab {
@@ -20,8 +20,6 @@ struct Constants {
   /** The lowest order that is tried [1].
    * (Refinement.KnowsThatASlowConvergenceMayGoOn) */
   double lowest = 0.1;
-  /** The highest one [1]. */
-  double highest = 3;
   /** The distance of two orders that are tried [1].
    * (Refinement.KnowsThatASlowConvergenceMayGoOn) */
   double apart = 0.05;
@@ -31,7 +29,7 @@ struct Constants {
   /** The highest one [1]. (Refinement.DoesNotBelieveEveryOrder) */
   double believed_to = 2.1;
   /** A lower order is taken if its deviation is at most this share of that of
-   * orders 1 and 2 [1]. */
+   * orders 1 and 2 [1]. (Refinement.DoesNotBelieveEveryOrder) */
   double fits_better = 0.5;
   /** Share of the finest grid's error in the uncertainty [1].
    * (Refinement.FindsTheLimitOfWhatGoesByAnOrder) */
@@ -49,20 +47,10 @@ struct Constants {
    * (Budget.ARefusalNamesTheToleranceAndTheWorkThatAreEnough) */
   double most_uncertain = 0.6;
   /** It needs no finer grid if it is uncertain by at most this [1].
-   * */
+   * (Without it: Assess.TellsTheErrorOfTheGrid) */
   double certain = 0.25;
-  /** Parts that are left out change the answer by at most this [1]. */
-  double room = 0.7;
-  /** What counts as no change [1]. */
-  double negligible = 0.1;
-  /** So much of the uncertainty of a limit before the end is allowed for [1].
-   * */
-  double uncertain_before = 0.5;
-  /** The uncertainty over the largest difference of perturbed runs: more runs
-   * would show a larger one [1]. */
-  double of_scatter = 1.5;
   /** A cloth whose kinetic energy is at most this share of its largest one is
-   * at rest [1]. */
+   * at rest [1]. (Without it: Advise.OfAClothAtRestIsItsRest) */
   double still = 1e-4;
 
   // Work
@@ -71,19 +59,14 @@ struct Constants {
    * multirate [spring evaluations]. */
   double too_much = 2e6;
   /** Cells along the short side of one sheet over those of another, at most
-   * [1]. */
+   * [1]. (Without it: Advise.CoarsensEachSheetOnItsOwn) */
   double most_ratio = 3;
-  /** Where the work depends on the motion: that of a run, over that of the last
-   * one by the same method, at least [1]. */
-  double surely = 0.4;
-  /** The work of such a run that is tried anyway, over that of all pilots [1].
-   * */
-  double little = 0.02;
   /** Cholesky factors that a cloth takes to its rest: a guess for the budget
    * [1]. */
   double rest_factors = 30;
   /** Runs of a mesh from files that the budget allows: pilots take five, a
-   * choice with its checks and its witness up to 19 [1]. */
+   * choice with its checks and its witness up to 19 [1].
+   * (Advise.AMeshFromFilesTakesAFewRuns) */
   double mesh_runs = 24;
 };
 inline constexpr Constants constant;

@@ -120,7 +120,7 @@ std::string GridStudy::add() {
     };
     run.trial = q_.pilots.run(run.model, on, run.work, {}, {}, look);
     if (run.trial.ok()) break;
-    if (run.factor >= 1) return "on " + on + ": " + run.trial.failure;
+    if (run.factor >= 1) return "on " + on + ": " + *run.trial.failure;
     q_.advice.grids.clear();  // it is too coarse to carry the load
   }
   ++level_;
@@ -132,9 +132,7 @@ std::string GridStudy::add() {
     return q_.advice.share +
            ", but that is 0: expected a tolerance with its unit";
   q_.pilots.knows(so_far());
-  return grids().converges(constant.negligible * tolerance())
-             ? ""
-             : diverging(q_.scene);
+  return grids().converges(tolerance()) ? "" : diverging(q_.scene);
 }
 
 std::string GridStudy::hopeless() const {

@@ -117,8 +117,8 @@ class GridStudy {
   std::array<std::size_t, 3> moments() const;
   /** Is a run to @a t_end [s] the motion of the scene at these moments? */
   bool follows(const Trial& t, double t_end) const;
-  /** Is @a a the answer at look @a k, to the tolerance and at most half as much
-   * for the uncertainty of the limit then? */
+  /** Is @a a the answer at look @a k, to the tolerance and at most as much for
+   * the uncertainty of the limit then? */
   bool follows(const Answer& a, std::size_t k) const;
   /** The distance of two answers at look @a k. If one event has not happened
    * yet, it is how long ago the other one did; infinite if it is no event. */

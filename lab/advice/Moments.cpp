@@ -70,8 +70,7 @@ bool GridStudy::follows(const Answer& a, std::size_t k) const {
     }
   const double u = then.size() < 3 ? tolerance() : then.uncertainty(),
                off = std::min(apart(a, finest, k), apart(a, then.limit(), k));
-  return off <=
-         tolerance() + std::min(u, constant.uncertain_before * tolerance());
+  return off <= tolerance() + std::min(u, tolerance());
 }
 
 std::optional<AdvisedRun> GridStudy::at_rest() {

@@ -51,7 +51,7 @@ void PartStudy::combine(const GridReport& run) {
     const bool saves = p.springs > 0 || p.step > 1.2;
     return std::tuple(p.change > 0, !saves, p.change);
   });
-  const double room = constant.room * grids_.tolerance();
+  const double room = grids_.tolerance();
   reductions_ = {{}};
   Answer before = run.trial.answer;  // with the last reduction
   for (const PartReport& part : order) {
@@ -85,8 +85,7 @@ void PartStudy::find_rest(const GridReport& run) {
   const auto& then = run.trial.earlier;
   for (std::size_t k = then.size();
        k > 0 && !then[k - 1].empty() &&
-       grids_.distance_of(then[k - 1], run.trial.answer) <=
-           constant.negligible * grids_.tolerance();
+       grids_.distance_of(then[k - 1], run.trial.answer) <= grids_.tolerance();
        --k)
     if (const double share = double(k) / Trial::looks; share <= 0.9)
       rest_time_ = share * q_.scene.t_end;

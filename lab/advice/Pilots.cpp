@@ -110,7 +110,7 @@ Trial Pilots::run(const Model& m, const std::string& doing, double work,
   Trial t;
   auto is_impossible = [&](const std::exception& e) {
     t.failure = e.what();
-    add_once(impossible_, t.failure);
+    add_once(impossible_, *t.failure);
   };
   try {
     t = try_out(

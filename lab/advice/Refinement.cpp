@@ -79,7 +79,7 @@ Refinement::Fit Refinement::best_fit(std::span<const GridReport> grids,
   }
   Fit best = fit_of_order(grids, constant.lowest);
   for (double p = constant.lowest + constant.apart;
-       p < constant.highest + constant.apart / 2; p += constant.apart)
+       p < constant.believed_to + 1.5 * constant.apart; p += constant.apart)
     if (Fit f = fit_of_order(grids, p); f.deviation < best.deviation) best = f;
   best.believed = best.order >= constant.believed_from &&
                   best.order <= constant.believed_to;

@@ -93,7 +93,7 @@ std::string GridStudy::find_chaos(double scatter) {
     const Trial t = q_.pilots.run(
         run.model, "a perturbed start", run.work, {}, shake_,
         [&](const Cloth& g) { shaken = all_answers(run.model, g); });
-    if (!t.ok()) return t.failure;
+    if (!t.ok()) return *t.failure;
     ++q_.advice.perturbed;
     scatter = std::max(scatter, distance_of(run.trial.answer, t.answer));
     const auto &a = run.trial.earlier, &b = t.earlier;
@@ -138,7 +138,7 @@ void GridStudy::find_buckling(const GridReport& run) {
                         ", but the cloth buckles: " +
                         (t.ok() ? name_of(q_.scene.measure) + " changes by " +
                                       with_unit(off, q_.scene.measure)
-                                : t.failure) +
+                                : *t.failure) +
                         " if its start is moved out of that plane by 1e-6 m";
 }
 

@@ -195,7 +195,7 @@ Trial try_out(const Model& m, const Shake& shake,
       }
     }
   });
-  result.failure = text_of(scene.failure());
+  if (scene.failure()) result.failure = text_of(scene.failure());
   if (ok) {
     result.answer = observer.answer();
     result.kinetic.push_back(kinetic_energy(scene.cloth()));

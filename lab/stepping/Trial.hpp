@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,13 +98,13 @@ struct Trial {
   std::vector<double>
       kinetic;  ///< energy after these times, and at the end [J]
   static constexpr int looks = 64;
-  std::string failure;  ///< why it failed; else empty
-  double work = 0;      ///< springs times force evaluations and products with
-                        ///< a matrix; a factor of it: factor_sweeps()
-  double seconds = 0;   ///< duration on this machine
-  double dt = 0;        ///< the first step [s]
+  std::optional<std::string> failure;  ///< why it failed
+  double work = 0;     ///< springs times force evaluations and products with
+                       ///< a matrix; a factor of it: factor_sweeps()
+  double seconds = 0;  ///< duration on this machine
+  double dt = 0;       ///< the first step [s]
   long long steps = 0;
-  bool ok() const { return failure.empty(); }
+  bool ok() const { return !failure; }
 };
 
 /** The step [s] of @a m: its dt, or the first step that is chosen, shortened so
