@@ -96,7 +96,7 @@ TEST_F(ClothProgram, SaysWhenTheStandardOutputIsFull) {
     Result r = folder.run("sh -c \"" + cloth + ' ' + options +
                           " >/dev/full; echo status \\$?\"");
     EXPECT_EQ(r.out, "status 2\n") << options;
-    EXPECT_TRUE(begins(r.err, "cloth: the standard output can't be written ("))
+    EXPECT_TRUE(has(r.err, "cloth: the standard output can't be written ("))
         << options;
   }
   EXPECT_EQ(folder

@@ -28,7 +28,7 @@ void Progress::show(const std::string& text, double done) {
          << "] ";
   }
   line << text;
-  if (done > 0)
+  if (done > 1e-3)  // before that, who knows
     line << ", "
          << CME212::short_text(
                 std::ceil(seconds() * std::max(0., 1 / done - 1)))
