@@ -245,7 +245,7 @@ std::string table_of_grids(const Advice& a) {
   return in_columns(rows);
 }
 
-/** Of the last choices. */
+/** The last choices that were run. */
 std::string table_of_choices(const Advice& a) {
   std::vector<Row> rows = {{"nodes tried", "method", "dt [s]",
                             "error" + in_brackets(a.measure),
