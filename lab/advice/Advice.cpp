@@ -146,7 +146,8 @@ std::string recommendation(const Advice& a) {
   if (a.model.t_end < a.t_end && !rests)
     text += "  it ends at " + number(a.model.t_end) + " s instead of " +
             number(a.t_end) + " s: after that " + name_of(a.measure) +
-            " changes by less than " + with_unit(a.tolerance, a.measure) + '\n';
+            " changes by less than " + with_unit(a.tolerance / 10, a.measure) +
+            '\n';
   auto finer = [&](const std::optional<double>& error, const char* what) {
     return (error ? with_unit(*error, a.measure) : std::string("not run")) +
            what;
@@ -244,7 +245,7 @@ std::string table_of_grids(const Advice& a) {
   return in_columns(rows);
 }
 
-/** The last choices, a row each. */
+/** The last choices that were run. */
 std::string table_of_choices(const Advice& a) {
   std::vector<Row> rows = {{"nodes tried", "method", "dt [s]",
                             "error" + in_brackets(a.measure),

@@ -85,7 +85,8 @@ void PartStudy::find_rest(const GridReport& run) {
   const auto& then = run.trial.earlier;
   for (std::size_t k = then.size();
        k > 0 && !then[k - 1].empty() &&
-       grids_.distance_of(then[k - 1], run.trial.answer) <= grids_.tolerance();
+       grids_.distance_of(then[k - 1], run.trial.answer) <=
+           constant.negligible * grids_.tolerance();
        --k)
     if (const double share = double(k) / Trial::looks; share <= 0.9)
       rest_time_ = share * q_.scene.t_end;

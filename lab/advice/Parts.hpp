@@ -27,8 +27,8 @@ class PartStudy {
   const std::vector<std::vector<std::string>>& reductions() const {
     return reductions_;
   }
-  /** The time [s] after which the answer stays within the tolerance; t-end if
-   * it does not. */
+  /** The time [s] after which the answer stays within a tenth of the tolerance;
+   * t-end if it does not. */
   double rest_time() const { return rest_time_; }
   /** Only drag and friction bring a cloth to rest. */
   static bool dissipates(const Model& m);
