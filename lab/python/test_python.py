@@ -92,6 +92,19 @@ def test_rest_is_where_a_mass_hangs_with_its_frequencies():
     assert "stable: the smallest eigenvalue is 7.14286 1/s^2" in str(r)
 
 
+def test_a_slack_cable_and_a_load():
+    net = mass_spring.Net(
+        np.array([[0, 0, 0], [0, 0, -1], [0, 0, -1.5]]), [[0, 1], [1, 2]],
+        k=50, L=1, mass=1, fixed=[0, 2], gravity=0, cables=[0, 1], load=[
+            [0, 0, 0], [0, 0, -10], [0, 0, 0]])
+    r = net.rest()
+    assert r.slack == [[1, 2]]
+    assert r.x[1] == pytest.approx([0, 0, -1.2])
+    assert r.force[0] == pytest.approx([0, 0, -10])
+    with pytest.raises(ValueError, match=r"^cables\[0\] is 2, expected a "):
+        mass_spring.Net([[0, 0, 0], [1, 0, 0]], [[0, 1]], cables=[2])
+
+
 def test_rest_names_what_does_not_stay_and_refuses_what_moves():
     r = mass_spring.Net([[0, 0, 0], [0, 0, 1]], [[0, 1]], fixed=[0]).rest()
     assert (r.stable, r.growing, r.loose) == (False, [1], [])
