@@ -1,5 +1,5 @@
 """Panels of curves, drawn by matplotlib: each curve has its name beside it, in
-its color, where it covers least.
+its color, where it covers least; what belongs to other panels is light gray.
 Positions are pixels from the lower left corner of a picture."""
 from __future__ import annotations
 
@@ -82,6 +82,7 @@ class Panel:
     y: Axis
     title: str = ""
     curves: list[Curve] = field(default_factory=list)
+    behind: list[Curve] = field(default_factory=list)
     keep_free: list[Box] = field(default_factory=list)
     at_end: bool = False  # names stand where curves end, if they can
 
@@ -213,8 +214,8 @@ class Picture:
                        solid_capstyle="butt")
 
     def axes(self, panel: Panel, xlabel: str = "", ylabel: str = "",
-             xticks: Any = None, yticks: Any = None, ynames: bool = True
-             ) -> Any:
+             xticks: Any = None, yticks: Any = None, xnames: bool = True,
+             ynames: bool = True) -> Any:
         """Axes of matplotlib for a panel. Ticks: a list of values, or none for
         decades and for what matplotlib chooses."""
         from matplotlib.ticker import NullLocator
@@ -224,7 +225,7 @@ class Picture:
             (panel.top - panel.bottom) / h))
         ax.set_axisbelow(True)
         for name, axis, ticks, named in (
-                ("x", panel.x, xticks, True), ("y", panel.y, yticks, ynames)):
+                ("x", panel.x, xticks, xnames), ("y", panel.y, yticks, ynames)):
             side = getattr(ax, name + "axis")
             if axis.log:
                 getattr(ax, f"set_{name}scale")("log")
@@ -253,6 +254,9 @@ class Picture:
     def draw(self, panel: Panel, **axes: Any) -> Any:
         """Draw a panel with its curves and their names; @a axes as there."""
         ax = self.axes(panel, **axes)
+        for curve in panel.behind:
+            ax.plot(*zip(*curve.points or [(math.nan, math.nan)]),
+                    color=BEHIND, lw=1.2)
         labels = place_labels(panel)
         for c in panel.curves:
             ax.plot(*zip(*c.points or [(math.nan, math.nan)]), color=c.color,
@@ -278,5 +282,8 @@ class Picture:
                       svg.getvalue(), flags=re.S)
         text = re.sub(r'(<svg [^>]*?)width="[\d.]+pt" height="[\d.]+pt"|'
                       r'height="[\d.]+pt" width="[\d.]+pt"', r"\1", text, 1)
+        # Cells of a map stay cells when they are magnified.
+        text = text.replace("<image ",
+                            "<image style=\"image-rendering:pixelated\" ")
         self.out.write_text(text.replace(
             '<g id="figure_1">', DARK_MODE + '<g id="figure_1">', 1))
