@@ -18,7 +18,6 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / room) for room in (
     "course/kit", "course/web", "lab/try")]
 import child            # noqa: E402
-import class_output     # noqa: E402
 import class_page       # noqa: E402
 import grade_tests      # noqa: E402
 import judge            # noqa: E402
@@ -161,10 +160,11 @@ class Door(unittest.TestCase):
                 row("d", "", "holds no Graph.hpp")]
         self.assertEqual(class_page.equal(rows), [["=a", "b"]])
         whole = types.SimpleNamespace(due=None, tag="", course=tasks.load())
-        table = class_output.table(whole, rows).splitlines()
+        table = whole_class.table(whole, rows).splitlines()
         self.assertRegex(table[1], "^'=a,.*the same files as b$")
         self.assertNotIn("same files", table[3])
-        self.assertIn("<li>=a, b</li>", class_page.page(whole, rows))
+        self.assertIn("<li>=a, b</li>", class_page.page(
+            whole.course, rows, None, False))
 
     def test_a_budget_ends_the_judge(self):
         one = types.SimpleNamespace(seconds=judge.BUDGET + 1,

@@ -15,12 +15,12 @@ class OneWaySprings : public SweptForce {
  public:
   /** @param acts by edge id; edges that are added later pull and push */
   explicit OneWaySprings(std::vector<Acts> acts) : acts_(std::move(acts)) {}
-  Acts acts(unsigned edge) const {
+  Acts way(unsigned edge) const {
     return edge < acts_.size() ? acts_[edge] : Acts::both;
   }
   /** Does a spring of this id and of length @a l [m] not act? */
   bool is_slack(unsigned edge, double l, const EdgeData& s) const {
-    return int(acts(edge)) * (l - s.L) < 0;
+    return int(way(edge)) * (l - s.L) < 0;
   }
   /** spring_force() of the spring of this id: zero if it is slack. */
   Point pull(unsigned edge, const Point& u, const EdgeData& s) const {

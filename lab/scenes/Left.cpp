@@ -56,7 +56,7 @@ Net net_left(const Cloth& g, const BuiltMesh& built,
   const OneWaySprings one_way(ways_of(built.mesh, built.ids, g));
   for (Edge e : g.edges())
     left.springs.push_back({index[e.node1().id()], index[e.node2().id()],
-                            e.value().K, e.value().L, one_way.acts(e.id())});
+                            e.value().K, e.value().L, one_way.way(e.id())});
   for (const auto& [i, force] : built.mesh.loads)
     if (arrays(g).node_in_use(built.ids[i]))
       left.loads.push_back({index[built.ids[i]], force});
