@@ -146,7 +146,7 @@ std::string Pilots::warning_of(const Model& m, const Model& scene,
     if (const auto words = f.values(); !words.empty() && words[0] != "")
       set_field(printed, f.name, words);
   if (const auto all = warnings_of(printed);
-      all.size() > warnings_of(scene).size())
+      !all.empty() && all.size() > warnings_of(scene).size())
     return said = all.back();
   Scene run(printed);
   Observer observer(run);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <mutex>
-#include <typeinfo>
 #include <utility>
 #include "lab/fast/GraphArrays.hpp"
 #include "lab/fast/LoadForce.hpp"
@@ -62,10 +61,10 @@ void ForcePlan::add(std::shared_ptr<const ZeroForce> force) {
   } else if (auto drags = exactly<NodeDrag, FunctionForce>(f)) {
     drag_.add(*drags);
   } else if (!exactly<ZeroForce, FunctionForce>(f)) {
-    if (auto one_way = std::dynamic_pointer_cast<const OneWaySprings>(force))
-      potential_.one_way = std::move(one_way);
-    if (typeid(f) == typeid(LoadForce))
-      potential_.loads = std::static_pointer_cast<const LoadForce>(force);
+    if (auto one_way = exactly<OneWaySprings, FunctionForce>(f))
+      potential_.one_way = {force, one_way};
+    if (auto loads = exactly<LoadForce, FunctionForce>(f))
+      potential_.loads = {force, loads};
     others_.push_back({std::move(force), dynamic_cast<const SweptForce*>(&f)});
   }
 }

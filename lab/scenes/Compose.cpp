@@ -340,8 +340,7 @@ CombinedForces force_of(const Model& m, const Net& mesh, const Cloth& g) {
   if (a.z != 0) forces.push_back(std::make_shared<GravityForce>(-a.z));
   if (a.x != 0 || a.y != 0)
     forces.push_back(std::make_shared<SidewaysForce>(a.x, a.y));
-  std::vector<unsigned> ids(g.num_nodes());
-  for (Node n : g.nodes()) ids[n.index()] = n.id();
+  const std::vector<unsigned> ids = ids_of(g);
   if (auto ways = ways_of(mesh, ids, g); !ways.empty())
     forces.push_back(std::make_shared<OneWaySprings>(std::move(ways)));
   else

@@ -23,6 +23,9 @@ struct BuiltMesh {
   std::vector<unsigned> ids;
 };
 
+/** The ids of the nodes of @a g, by index.  O(N) */
+std::vector<unsigned> ids_of(const Cloth& g);
+
 /** How the springs of @a g act, by edge id, as @a net lists them; empty if all
  * pull and push.  @param ids of its nodes   O(springs) */
 std::vector<Acts> ways_of(const Net& net, const std::vector<unsigned>& ids,

@@ -6,6 +6,12 @@
 
 namespace lab {
 
+std::vector<unsigned> ids_of(const Cloth& g) {
+  std::vector<unsigned> ids;
+  for (Node n : g.nodes()) ids.push_back(n.id());
+  return ids;
+}
+
 std::vector<Acts> ways_of(const Net& net, const std::vector<unsigned>& ids,
                           const Cloth& g) {
   std::vector<Acts> all;

@@ -58,8 +58,7 @@ System& Scene::build() {
   Cloth& g = built_.cloth;
   g.clear();
   build_model(g, model_, mesh_.mesh);
-  mesh_.ids.clear();
-  for (Node n : g.nodes()) mesh_.ids.push_back(n.id());
+  mesh_.ids = ids_of(g);
   take_forces(force_of(model_, mesh_.mesh, g));
   built_.hand.reset();
   held_ = held_of(model_, mesh_.mesh, g);

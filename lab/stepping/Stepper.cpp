@@ -393,8 +393,9 @@ void Stepper::keep_checked() {
   const double thin = constraint_.thinnest();
   if (!std::isfinite(thin)) return;
   double a = system_.potential.gravity.size();
-  for (Node n : system_.cloth.nodes())
-    a = std::max(a, norm(system_.potential.load(n)) / n.value().mass);
+  if (system_.potential.loads)
+    for (Node n : system_.cloth.nodes())
+      a = std::max(a, norm(system_.potential.load(n)) / n.value().mass);
   const double gain = a * guard_interval * clock_.dt;
   system_.watched->watch(
       system_.cloth, (max_speed(system_.cloth) + gain) * clock_.dt > thin / 8);
